@@ -1,0 +1,37 @@
+//! Grains: what they are, how they touch, how they move. Double precision, SI units.
+//!
+//! A run is a [`Model`] (the checked description) and a [`State`] (plain data). The
+//! [`Solver`] takes both, is told to advance by n steps, and is read through a
+//! [`Snapshot`]. A new phase of a protocol is a new model with the old state.
+
+mod barrier;
+mod boundary;
+mod check;
+pub mod contact;
+mod cut;
+mod grains;
+mod kernels;
+mod lanes;
+pub mod measure;
+mod model;
+mod motion;
+pub mod output;
+mod reading;
+mod search;
+mod shared;
+mod slab;
+mod snapshot;
+mod solver;
+mod sorted;
+pub mod stability;
+mod state;
+mod step;
+mod sweep;
+mod walls;
+
+pub use contact::ContactLaw;
+pub use grains::{Constraint, Grains, Horizontal};
+pub use model::{Domain, Drive, Model, StressLoad, Surface, Wall, WallMotion};
+pub use snapshot::{Ledger, Snapshot, Sums};
+pub use solver::{Error, Outside, Solver};
+pub use state::{Body, Contact, History, State, WallState};

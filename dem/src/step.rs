@@ -1,0 +1,187 @@
+//! The order of one grain step, as every thread of a solver walks through it.
+
+use crate::barrier::Barrier;
+use crate::boundary::{Boundary, Loading};
+use crate::kernels::Kernels;
+use crate::lanes::Row;
+use crate::motion::{Own, TURN_EVERY, turned};
+use crate::shared::Shared;
+use crate::slab::Slab;
+use crate::sweep::View;
+use glam::DQuat;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Rows of all grains in sorted order; positions, velocities and spins end with the dummies.
+pub(crate) struct Rows {
+    pub position: Shared<Row>,
+    pub velocity: Shared<Row>,
+    /// Empty where grains do not spin, as `turned`.
+    pub spin: Shared<Row>,
+    pub turned: Shared<Row>,
+    pub orientation: Shared<DQuat>,
+}
+
+/// Forces that are summed over walls and layers: one array each.
+pub(crate) struct Gauges {
+    pub values: Shared<f64>,
+    /// The walls, the held layer, the driven layer.
+    pub ranges: Vec<Range<usize>>,
+}
+
+/// What the threads of one call share.
+pub(crate) struct Crew<'a> {
+    pub kernels: Kernels,
+    pub loading: Loading<'a>,
+    pub rows: &'a Rows,
+    pub gauges: &'a Gauges,
+    pub kick: &'a [f64],
+    pub twist: &'a [f64],
+    pub mass: &'a [f64],
+    pub outside: Option<(&'a [Row], &'a [Row])>,
+    pub barrier: &'a Barrier,
+    /// The highest speed bound of each thread, as bits.
+    pub speeds: &'a [AtomicU64],
+    /// The way after which the neighbour list may miss a pair [m].
+    pub reach: f64,
+}
+
+/// Why the threads came back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Stop {
+    /// All steps are made.
+    Done,
+    /// Grains have moved, and the forces of their new places need a new neighbour list.
+    Search {
+        /// Bound on the speed of the fastest grain [m/s].
+        speed: f64,
+    },
+}
+
+impl Crew<'_> {
+    /// Make steps until `until` are made since the solver began, or a search is needed.
+    /// `moved`: grains have moved already, begin with the forces.
+    pub fn walk(
+        &self,
+        thread: usize,
+        slab: &mut Slab,
+        mut boundary: Boundary,
+        until: u64,
+        mut moved: bool,
+    ) -> (Boundary, Stop) {
+        let _guard = self.barrier.guard();
+        let step = self.loading.model.step;
+        while boundary.sums.steps < until {
+            if !moved {
+                boundary.advance(self.loading);
+                let speed = self.move_own(slab, &boundary);
+                self.speeds[thread].store(speed.to_bits(), Ordering::Relaxed);
+                self.barrier.wait();
+                let speeds = self.speeds.iter();
+                let speed = speeds
+                    .map(|bits| f64::from_bits(bits.load(Ordering::Relaxed)))
+                    .fold(boundary.wall_speed(), f64::max);
+                boundary.travel += speed * step;
+                if boundary.travel > self.reach || boundary.travel.is_nan() {
+                    return (boundary, Stop::Search { speed });
+                }
+            }
+            moved = false;
+            self.push_own(slab, &boundary, step);
+            self.barrier.wait();
+            // SAFETY: gauges are written before this barrier, and next after another one.
+            let values = unsafe { self.gauges.values.read() };
+            boundary.read(self.loading, &self.gauges.ranges, values);
+        }
+        (boundary, Stop::Done)
+    }
+
+    /// Kick and drift of own grains.
+    fn move_own(&self, slab: &mut Slab, boundary: &Boundary) -> f64 {
+        let range = slab.own.clone();
+        let spins = if self.twist.is_empty() {
+            0..0
+        } else {
+            range.clone()
+        };
+        // SAFETY: between the barriers only this thread touches its own grains.
+        let mut own = unsafe {
+            Own {
+                position: self.rows.position.write(range.clone()),
+                velocity: self.rows.velocity.write(range.clone()),
+                spin: self.rows.spin.write(spins.clone()),
+                turned: self.rows.turned.write(spins.clone()),
+                twist: &self.twist[spins.clone()],
+                kick: &self.kick[range.clone()],
+                mass: &self.mass[range.clone()],
+                gravity: self.loading.model.gravity,
+                step: self.loading.model.step,
+                outside: self
+                    .outside
+                    .map(|(force, torque)| (&force[range.clone()], &torque[range.clone()])),
+            }
+        };
+        for driven in &slab.driven {
+            own.velocity[driven.own as usize].0[0] = boundary.drive_velocity;
+        }
+        let speed = self.kernels.motion(&mut own, slab);
+        if (boundary.sums.steps + 1).is_multiple_of(TURN_EVERY) {
+            // SAFETY: as above.
+            let orientation = unsafe { self.rows.orientation.write(spins) };
+            for (orientation, rotation) in orientation.iter_mut().zip(own.turned) {
+                *orientation = turned(*orientation, rotation.xyz());
+                *rotation = Row::ZERO;
+            }
+        }
+        speed
+    }
+
+    /// Contact forces on own grains, and their shares of the gauges. `step` is the time
+    /// over which springs grow.
+    pub fn push_own(&self, slab: &mut Slab, boundary: &Boundary, step: f64) {
+        let model = self.loading.model;
+        // SAFETY: rows are written before the last barrier, and next after another one.
+        let view = unsafe {
+            View {
+                law: &model.law,
+                domain: model.domain,
+                position: self.rows.position.read(),
+                velocity: self.rows.velocity.read(),
+                spin: self.rows.spin.read(),
+                step,
+            }
+        };
+        self.kernels.pairs(&view, slab);
+        for (k, wall) in model.walls.iter().enumerate() {
+            let start = self.gauges.ranges[k].start + slab.walls[k].gauge;
+            let range = start..start + slab.walls[k].count;
+            // SAFETY: each slab has its own range of each gauge.
+            let gauge = unsafe { self.gauges.values.write(range) };
+            self.kernels
+                .wall(&view, slab, k, wall, boundary.walls[k], gauge);
+        }
+        self.constrain(slab);
+    }
+
+    /// Horizontal forces on held and driven grains go to the gauges instead of the grains.
+    fn constrain(&self, slab: &mut Slab) {
+        let gravity = self.loading.model.gravity;
+        let layers = [&slab.held, &slab.driven];
+        let first_layer = self.loading.model.walls.len();
+        for (k, layer) in layers.into_iter().enumerate() {
+            let offset = self.gauges.ranges[first_layer + k].start;
+            for place in layer {
+                let force = &mut slab.force[place.own as usize].0;
+                let weight = self.mass[slab.own.start + place.own as usize] * gravity.x;
+                let at = offset + place.gauge as usize;
+                // SAFETY: each grain has its own place in the gauge.
+                unsafe { self.gauges.values.write(at..at + 1)[0] = force[0] - weight };
+                force[0] = 0.0;
+                force[1] = 0.0;
+            }
+        }
+        for &own in &slab.still {
+            slab.torque[own as usize].0[..3].fill(0.0);
+        }
+    }
+}
