@@ -1,0 +1,131 @@
+//! `esker bench speed`: how many grain-steps a second on a dense sheared bed.
+//!
+//! Every round takes each case once, from the same packing, so that a machine whose clock
+//! wanders is fair to all of them; medians and extremes over the rounds are reported.
+
+mod case;
+mod lammps;
+mod packing;
+mod report;
+
+use anyhow::{Context, Result, ensure};
+use case::Case;
+use lammps::Lammps;
+use packing::Packing;
+use report::{Row, Sample};
+use std::path::PathBuf;
+
+/// What `esker bench speed` measures.
+#[derive(Clone, Debug, clap::Args)]
+pub struct SpeedArgs {
+    /// Numbers of grains, multiples of 1000
+    #[arg(long, value_delimiter = ',', default_value = "1000,10000,100000")]
+    pub grains: Vec<usize>,
+    /// Numbers of threads (and of LAMMPS' ranks) [default: one for each core]
+    #[arg(long, value_delimiter = ',', value_name = "N")]
+    pub threads: Vec<usize>,
+    /// Rounds; each takes every case once
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    pub rounds: u32,
+    /// Write the results as a JSON array, one object a case
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Run the same packing in LAMMPS too (needs `lmp`, and `mpirun` for several ranks)
+    #[arg(long)]
+    pub with_lammps: bool,
+}
+
+/// Measure, print a table, and write the JSON file if one is asked for.
+///
+/// # Errors
+/// Counts that are no multiple of 1000, a LAMMPS that is asked for and cannot be run, a bed
+/// whose coordination number falls below 4 (no longer dense, so no measure of one), and
+/// files that cannot be written.
+pub fn speed(args: &SpeedArgs) -> Result<()> {
+    let threads = if args.threads.is_empty() {
+        vec![std::thread::available_parallelism()?.get()]
+    } else {
+        args.threads.clone()
+    };
+    ensure!(
+        threads.iter().all(|&t| t > 0),
+        "--threads: give 1 or more threads"
+    );
+    for &grains in &args.grains {
+        packing::check_count(grains)?;
+    }
+    if args.with_lammps {
+        lammps::check_installed(threads.iter().any(|&t| t > 1))?;
+    }
+
+    let mut rows = Vec::new();
+    for &grains in &args.grains {
+        let packing = Packing::of(grains);
+        for &threads in &threads {
+            let new = measure(&packing, threads, args)?;
+            report::print(&new, args.rounds);
+            rows.extend(new);
+        }
+    }
+    if let Some(file) = &args.json {
+        let text = serde_json::to_string_pretty(&rows)? + "\n";
+        std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+    }
+    ensure!(
+        rows.iter().all(|row| row.coordination_number >= 4.0),
+        "a bed fell below 4 contacts a grain: these are not the speeds of a dense bed"
+    );
+    Ok(())
+}
+
+/// All cases on one packing and one number of threads, alternating.
+fn measure(packing: &Packing, threads: usize, args: &SpeedArgs) -> Result<Vec<Row>> {
+    let length = Length::of(packing.len(), threads);
+    let lammps = if args.with_lammps {
+        Lammps::all(packing, threads, length)?
+    } else {
+        Vec::new()
+    };
+    let mut own = Case::ALL.map(|case| (case, Vec::new()));
+    let mut peers: Vec<_> = lammps.iter().map(|peer| (peer, Vec::new())).collect();
+    for _ in 0..args.rounds {
+        for (case, samples) in &mut own {
+            samples.push(case.run(packing, threads, length)?);
+        }
+        for (peer, samples) in &mut peers {
+            samples.push(peer.run(length)?);
+        }
+    }
+
+    let row = |case: &str, backend, samples: &[Sample]| {
+        Row::new(case, backend, packing, threads, samples)
+    };
+    let poster = &own[0].1;
+    let mut rows: Vec<Row> = own.iter().map(|(c, s)| row(c.name(), "cpu", s)).collect();
+    rows.extend(peers.iter().map(|(peer, samples)| Row {
+        poster_ratio: Some(report::ratio(poster, samples)),
+        ..row(&peer.name(), "lammps", samples)
+    }));
+    Ok(rows)
+}
+
+/// How long one measurement is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Length {
+    /// Steps before the clock starts: caches and neighbour lists settle.
+    warm_up: u64,
+    /// Steps on the clock.
+    steps: u64,
+}
+
+impl Length {
+    /// About 6 million grain-steps a thread, and 100 steps at least. Held planes let the
+    /// pressure of a sheared bed rise, so small beds must not run for long: 6000 steps of
+    /// 1000 grains are a strain of 0.001, and the bed stays at 4.1 contacts a grain.
+    fn of(grains: usize, threads: usize) -> Self {
+        Self {
+            warm_up: (3_000_000 / grains as u64).clamp(30, 300),
+            steps: (6_000_000 * threads as u64 / grains as u64).max(100),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! How fast this machine steps the grains of a scene: measured on a small cubic packing.
+
+use crate::scene::Scene;
+use anyhow::Result;
+use dem::{Grains, Model, Solver, State, WallState};
+use glam::DVec3;
+use std::time::Instant;
+
+/// What a grain costs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Wall-clock time of a grain-step [s].
+    pub grain_step: f64,
+    /// Memory of the solver [bytes].
+    pub bytes: f64,
+}
+
+/// Grains of the packing at most: more would not fit the caches less, and take longer.
+const GRAINS: usize = 20_000;
+/// How long to measure [s].
+const SECONDS: f64 = 0.5;
+
+/// Measure `model` on `threads` threads (0: all) with grains of the scene's mean size on a
+/// simple cubic lattice, pressed together so that each has six contacts; a sheared bed has
+/// four to five, and more pairs that are near without touching.
+///
+/// # Errors
+/// Those of the solver.
+pub fn calibrate(scene: &Scene, model: &Model, threads: usize) -> Result<Cost> {
+    let radius = scene.start.grains.mean_radius();
+    let mass = scene.start.grains.mass.iter().sum::<f64>() / scene.start.grains.len() as f64;
+    let side = (scene.start.grains.len().min(GRAINS) as f64)
+        .cbrt()
+        .round()
+        .max(3.0) as usize;
+    let spacing = 2.0 * radius * (1.0 - 1e-4);
+    let length = side as f64 * spacing;
+    let mut grains = Grains::default();
+    let density = mass / (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3));
+    for k in 0..side.pow(3) {
+        let cell = [k % side, k / side % side, k / side / side].map(|n| (n as f64 + 0.5) * spacing);
+        grains.add_sphere(DVec3::from_array(cell), radius, density);
+    }
+    let count = grains.len() as f64;
+    let at = |offset| WallState {
+        offset,
+        velocity: 0.0,
+    };
+    let state = State {
+        walls: vec![at(0.0), at(-length)],
+        grains,
+        ..State::default()
+    };
+    let mut model = model.clone();
+    model.domain = dem::Domain {
+        size: [length; 2],
+        periodic: [true; 2],
+    };
+    model.walls.truncate(state.walls.len());
+    for wall in &mut model.walls {
+        wall.motion = dem::WallMotion::Held;
+    }
+    model.drive = None;
+    let mut solver = Solver::new(model, state, threads)?;
+    solver.advance(20)?;
+    let (begun, mut steps) = (Instant::now(), 0);
+    while begun.elapsed().as_secs_f64() < SECONDS {
+        solver.advance(20)?;
+        steps += 20;
+    }
+    Ok(Cost {
+        grain_step: begun.elapsed().as_secs_f64() / (steps as f64 * count),
+        bytes: solver.memory() as f64 / count,
+    })
+}

@@ -1,0 +1,75 @@
+//! `esker run`
+
+use super::SceneArgs;
+use crate::run::{Options, STATE, run as run_scene};
+use anyhow::{Context, Result};
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Arguments of `esker run`.
+#[derive(Clone, Debug, Args)]
+pub struct Run {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder of the results [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Number of threads; results do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Show neither progress nor summary
+    #[arg(long)]
+    quiet: bool,
+    /// Replace results that are there
+    #[arg(long)]
+    force: bool,
+}
+
+/// Exit status of a program that Ctrl-C ended, as shells know it.
+const INTERRUPTED: u8 = 130;
+
+/// `esker run`
+///
+/// # Errors
+/// A scene that is wrong, results that are there already, a run that failed.
+pub fn run(arguments: &Run) -> Result<ExitCode> {
+    let (scene, name) = arguments.scene.read()?;
+    let options = Options {
+        out: arguments
+            .out
+            .clone()
+            .unwrap_or_else(|| PathBuf::from("results").join(name)),
+        threads: arguments.threads.map_or(0, usize::from),
+        force: arguments.force,
+        quiet: arguments.quiet,
+    };
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = stop.clone();
+    let on_signal = move || {
+        // The second time the user means it.
+        if asked.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    };
+    ctrlc::set_handler(on_signal).context("cannot listen for Ctrl-C")?;
+    let summary = run_scene(&scene, &options, &stop)?;
+    if !arguments.quiet {
+        println!("{summary}");
+    }
+    if summary.stopped() {
+        // Scenes look for files from their own folder.
+        let state = std::path::absolute(options.out.join(STATE))?;
+        let phase = summary.phases.last().map_or("", |phase| &phase.name);
+        eprintln!(
+            "stopped; to go on, run a scene with [grains] state = {:?}, with the phases from \
+             {phase:?} on, and with start = \"keep\" in that one: it keeps its end, and counts \
+             from its beginning",
+            state.display().to_string()
+        );
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}

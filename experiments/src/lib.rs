@@ -1,0 +1,11 @@
+//! The program esker: scenes, protocol, output.
+
+pub mod bed;
+pub mod bench;
+pub mod commands;
+pub mod output;
+pub mod protocol;
+pub mod ready;
+pub mod run;
+pub mod scene;
+pub mod start;

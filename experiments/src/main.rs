@@ -1,0 +1,48 @@
+//! The command line of esker.
+
+use clap::{Parser, Subcommand};
+use experiments::commands::{self, Bench, Check, Import, New, Run};
+use std::process::ExitCode;
+
+/// Grains under glaciers: the mechanics of sediment, grain by grain
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true)]
+struct Esker {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene, from its start to the end of its protocol
+    Run(Run),
+    /// Say what the numbers of a scene imply, without running it
+    Check(Check),
+    /// List the ready-made experiments
+    List,
+    /// Copy a ready-made experiment into a folder of your own, to edit
+    New(New),
+    /// Turn a bed of grains from another program into NetCDF
+    Import(Import),
+    /// Measure how fast this machine is
+    #[command(subcommand)]
+    Bench(Bench),
+}
+
+fn main() -> ExitCode {
+    let done = match Esker::parse().command {
+        Command::Run(arguments) => commands::run(&arguments),
+        Command::Check(arguments) => commands::check(&arguments),
+        Command::List => commands::list(),
+        Command::New(arguments) => commands::new(&arguments),
+        Command::Import(arguments) => commands::import(&arguments),
+        Command::Bench(arguments) => commands::bench(&arguments),
+    };
+    match done {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

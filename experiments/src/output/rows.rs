@@ -1,0 +1,89 @@
+//! A NetCDF file that grows by one row with each frame.
+
+use super::catalogue::PROGRESS;
+use super::netcdf::{create, define, describe, put};
+use super::{Frame, Header, provenance};
+use anyhow::Result;
+use dem::output::{Storage, Variable};
+use ndarray::{ArrayD, arr0};
+use netcdf::FileMut;
+use std::path::Path;
+
+const TIME: Variable = Variable {
+    name: "time",
+    dims: &[],
+    units: "s",
+    long_name: "simulated time",
+    storage: Storage::Double,
+};
+
+/// The file, and how many rows it has.
+pub(super) struct Rows {
+    pub file: FileMut,
+    rows: usize,
+}
+
+impl Rows {
+    /// Make the file with its attributes, the unlimited dimension `time`, and where in the
+    /// protocol each row was taken.
+    ///
+    /// `chunk`: number of rows kept together.
+    pub fn create(path: &Path, header: &Header, phases: &[String], chunk: usize) -> Result<Self> {
+        let mut file = create(path)?;
+        file.add_attribute("Conventions", "CF-1.11")?;
+        for (name, text) in provenance::texts(header) {
+            file.add_attribute(name, text)?;
+        }
+        file.add_attribute("seed", header.seed)?;
+        file.add_unlimited_dimension("time")?;
+        define(&mut file, &TIME, &["time"], &[chunk])?;
+        for place in PROGRESS {
+            define(&mut file, &place.variable, &["time"], &[chunk])?;
+        }
+        if !phases.is_empty() {
+            let numbers: Vec<_> = (0..phases.len() as i64).collect();
+            // The words of flag_meanings are separated by blanks.
+            let names: Vec<_> = phases.iter().map(|name| name.replace(' ', "_")).collect();
+            describe(&mut file, "phase", "flag_values", numbers)?;
+            describe(&mut file, "phase", "flag_meanings", names.join(" "))?;
+        }
+        Ok(Self { file, rows: 0 })
+    }
+
+    /// Define a variable over time and its own dimensions.
+    ///
+    /// xarray takes the place in the protocol as its coordinates.
+    pub fn define(&mut self, variable: &Variable, chunk: &[usize]) -> Result<()> {
+        let dims = [&["time"], variable.dims].concat();
+        define(&mut self.file, variable, &dims, chunk)?;
+        describe(&mut self.file, variable.name, "coordinates", "phase strain")
+    }
+
+    /// Begin the row of `frame`.
+    pub fn begin(&mut self, frame: &Frame) -> Result<()> {
+        self.scalar(&TIME, frame.snapshot.state.time)?;
+        for place in PROGRESS {
+            self.scalar(&place.variable, (place.read)(frame))?;
+        }
+        Ok(())
+    }
+
+    /// Write a value into the row.
+    pub fn scalar(&mut self, variable: &Variable, value: f64) -> Result<()> {
+        self.array(variable, &arr0(value).into_dyn())
+    }
+
+    /// Write an array into the row.
+    pub fn array(&mut self, variable: &Variable, values: &ArrayD<f64>) -> Result<()> {
+        let start = [vec![self.rows], vec![0; values.ndim()]].concat();
+        put(&mut self.file, variable, &start, values)
+    }
+
+    /// End the row and put it on the disk: a run that is killed keeps only what was
+    /// synchronised.
+    pub fn end(&mut self) -> Result<()> {
+        self.rows += 1;
+        self.file.sync()?;
+        Ok(())
+    }
+}

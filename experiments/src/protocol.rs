@@ -1,0 +1,235 @@
+//! The laboratory protocol: what each phase makes of the state that it is handed.
+
+use crate::scene::{Motion, Phase, Scene, Shear};
+use crate::start::highest;
+use anyhow::{Result, ensure};
+use dem::{Constraint, Drive, Horizontal, Model, State, Surface, Wall, WallMotion, WallState};
+use glam::DVec3;
+
+/// Index of the bottom wall in [`Model::walls`].
+pub const BOTTOM: usize = 0;
+/// Index of the top wall in [`Model::walls`].
+pub const TOP: usize = 1;
+
+/// A phase that is ready to run.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// What acts on the grains.
+    pub model: Model,
+    /// The state at the start of the phase.
+    pub state: State,
+    /// Height of the bed when the phase began [m]; strains refer to it.
+    pub height: f64,
+}
+
+/// What a phase measures from: the bed at its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// Time of the state [s].
+    pub time: f64,
+    /// Height of the bed [m].
+    pub height: f64,
+    /// Way of the driven layer [m].
+    pub way: f64,
+    /// Shear strain of the phases before [-].
+    pub strain: f64,
+}
+
+/// A phase that was stopped before its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unfinished {
+    /// Its name.
+    pub phase: String,
+    /// What it measures from.
+    pub reference: Reference,
+}
+
+/// What came before a state.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Past {
+    /// Shear strain since shearing began [-].
+    pub strain: f64,
+    /// The phase that the state is in the middle of; none: it is at the end of one.
+    pub unfinished: Option<Unfinished>,
+}
+
+impl Past {
+    /// What `phase` measures from, if it is to go on where it was stopped: it has the same
+    /// name, and keeps the motion.
+    pub fn reference_of(&self, phase: &Phase) -> Option<Reference> {
+        let same = |u: &&Unfinished| u.phase == phase.name && phase.start == Motion::Keep;
+        let unfinished = self.unfinished.as_ref().filter(same);
+        unfinished.map(|unfinished| unfinished.reference)
+    }
+}
+
+/// The model of `phase` on a bed of `height` [m].
+pub fn model(scene: &Scene, phase: &Phase, height: f64) -> Model {
+    let drive = phase.shear.map(|shear| match shear {
+        Shear::StrainRate(rate) => Drive::Velocity(rate * height),
+        Shear::Velocity(velocity) => Drive::Velocity(velocity),
+        Shear::Stress(stress) => Drive::ShearStress(stress),
+    });
+    Model {
+        domain: scene.domain,
+        gravity: phase.gravity,
+        law: phase.law,
+        walls: walls(scene, phase),
+        drive,
+        step: scene.step,
+        skin: scene.skin,
+        ledger: scene.output.needs_ledger(),
+    }
+}
+
+/// Bottom, top, and a pair of frictionless ones for each side that is not periodic.
+fn walls(scene: &Scene, phase: &Phase) -> Vec<Wall> {
+    let wall = |name: &str, normal, surface, motion| Wall {
+        name: name.into(),
+        normal,
+        surface,
+        motion,
+    };
+    let mut walls = vec![
+        wall("bottom", DVec3::Z, scene.bottom, WallMotion::Held),
+        wall("top", -DVec3::Z, scene.top, phase.top),
+    ];
+    let sides = [(DVec3::X, ["left", "right"]), (DVec3::Y, ["front", "back"])];
+    for (k, (normal, names)) in sides.into_iter().enumerate() {
+        if !scene.domain.periodic[k] {
+            let side = |name, normal| wall(name, normal, Surface::Frictionless, WallMotion::Held);
+            walls.extend([side(names[0], normal), side(names[1], -normal)]);
+        }
+    }
+    walls
+}
+
+/// Height of the top wall above the bottom wall [m].
+pub fn wall_height(state: &State) -> f64 {
+    -state.walls[TOP].offset - state.walls[BOTTOM].offset
+}
+
+/// Height of the bed [m]: to the top wall, or to the highest grain where the wall is
+/// higher.
+pub fn bed_height(state: &State) -> f64 {
+    wall_height(state).min(highest(&state.grains) - state.walls[BOTTOM].offset)
+}
+
+/// Way of the driven layer along x [m], the mean of its grains; zero without one.
+pub fn driven_way(state: &State) -> f64 {
+    let grains = &state.grains;
+    let each = grains.constraint.iter().zip(&grains.displacement);
+    let driven = each.filter(|(c, _)| c.horizontal == Horizontal::Driven);
+    let (sum, count) = driven.fold((0.0, 0.0), |(s, n), (_, d)| (s + d.x, n + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// Hand `state` to `phase`: lower the wall, choose the layers, set the motion. `reference`:
+/// what a phase that goes on in its middle measures from.
+///
+/// # Errors
+/// A bed that is too thin for its layers.
+pub fn prepare(
+    scene: &Scene,
+    phase: &Phase,
+    mut state: State,
+    reference: Option<Reference>,
+) -> Result<Prepared> {
+    let goes_on = phase.start == Motion::Keep;
+    if !goes_on && matches!(phase.top, WallMotion::Stress(_)) {
+        lower_wall(&mut state);
+    }
+    let height = reference.map_or_else(|| bed_height(&state), |reference| reference.height);
+    choose_layers(phase, &mut state, height)?;
+    let model = model(scene, phase, height);
+    match phase.start {
+        Motion::Keep => {}
+        Motion::Rest => stop(&mut state),
+        Motion::Profile => {
+            stop(&mut state);
+            if let Some(Drive::Velocity(velocity)) = model.drive {
+                set_profile(&mut state, velocity, height, phase.layer);
+            }
+        }
+    }
+    Ok(Prepared {
+        model,
+        state,
+        height,
+    })
+}
+
+/// A wall that will be pushed down begins on the highest grain: it would fall through
+/// the space above, and hit the bed with what it gained there.
+fn lower_wall(state: &mut State) {
+    let top = highest(&state.grains);
+    if -state.walls[TOP].offset > top {
+        state.walls[TOP] = WallState {
+            offset: -top,
+            velocity: 0.0,
+        };
+    }
+}
+
+fn choose_layers(phase: &Phase, state: &mut State, height: f64) -> Result<()> {
+    let floor = state.walls[BOTTOM].offset;
+    let grains = &mut state.grains;
+    let is = |horizontal| move |c: &Constraint| c.horizontal == horizontal;
+    if phase.shear.is_none() {
+        grains.constraint.fill(Constraint::default());
+        return Ok(());
+    }
+    // A shear that goes on keeps the layers that it has.
+    if phase.start == Motion::Keep && grains.constraint.iter().any(is(Horizontal::Driven)) {
+        return Ok(());
+    }
+    ensure!(
+        2.0 * phase.layer < height,
+        "phase {}: the bed is {height:.4} m high, and the held and the driven layer of {} m each \
+         leave nothing between them; write a smaller layer, or use more grains",
+        phase.name,
+        phase.layer
+    );
+    for (constraint, position) in grains.constraint.iter_mut().zip(&grains.position) {
+        let z = position.z - floor;
+        let horizontal = if z < phase.layer {
+            Horizontal::Held
+        } else if z > height - phase.layer {
+            Horizontal::Driven
+        } else {
+            Horizontal::Free
+        };
+        *constraint = Constraint {
+            horizontal,
+            rotation_held: horizontal != Horizontal::Free,
+        };
+    }
+    for (horizontal, name) in [(Horizontal::Held, "held"), (Horizontal::Driven, "driven")] {
+        ensure!(
+            grains.constraint.iter().any(is(horizontal)),
+            "phase {}: no grain has its centre in the {name} layer of {} m; write a thicker layer",
+            phase.name,
+            phase.layer
+        );
+    }
+    Ok(())
+}
+
+fn stop(state: &mut State) {
+    state.grains.velocity.fill(DVec3::ZERO);
+    state.grains.angular_velocity.fill(DVec3::ZERO);
+    for wall in &mut state.walls {
+        wall.velocity = 0.0;
+    }
+}
+
+/// Velocities along x from zero at the top of the held layer to `velocity` at the bottom
+/// of the driven one.
+fn set_profile(state: &mut State, velocity: f64, height: f64, layer: f64) {
+    let floor = state.walls[BOTTOM].offset;
+    let grains = &mut state.grains;
+    for (v, position) in grains.velocity.iter_mut().zip(&grains.position) {
+        let share = (position.z - floor - layer) / (height - 2.0 * layer);
+        v.x = velocity * share.clamp(0.0, 1.0);
+    }
+}

@@ -1,0 +1,331 @@
+//! Runs a scene: phase by phase, advance and look, until the protocol is done.
+
+mod bed;
+mod intervals;
+mod pace;
+mod progress;
+mod rest;
+mod summary;
+
+pub use summary::{Outcome, PhaseSummary, Summary};
+
+use crate::output::state::Saved;
+use crate::output::{self, Header, Plan, Writer};
+use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
+use crate::scene::{Phase, Scene};
+use anyhow::{Context, Result, bail, ensure};
+use bed::Bed;
+use dem::{Drive, Model, Solver, State, Sums};
+use intervals::{Due, Intervals};
+use pace::Pace;
+use progress::Progress;
+use rest::RestWatch;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// How to run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Folder of the results.
+    pub out: PathBuf,
+    /// Number of threads; 0: one for each core.
+    pub threads: usize,
+    /// Replace results that are there?
+    pub force: bool,
+    /// Say nothing?
+    pub quiet: bool,
+}
+
+/// Files that a run leaves.
+pub const FILES: [&str; 5] = [
+    "series.nc",
+    "profiles.nc",
+    "grains.nc",
+    "contacts.nc",
+    STATE,
+];
+
+/// The file to go on from.
+pub const STATE: &str = "state.h5";
+
+/// Run `scene` until its protocol is done, or until `stop` becomes true; then all that was
+/// computed is on disk, the state too.
+///
+/// # Errors
+/// Results that are there already, files that cannot be written, a bed that does not fit
+/// its layers, numbers that run away.
+pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summary> {
+    check_room(&options.out, options.force)?;
+    check_start(scene, options.threads)?;
+    let plan = plan(scene)?;
+    make_room(&options.out)?;
+    let header = Header {
+        title: scene.title.clone(),
+        scene: scene.text.clone(),
+        seed: scene.seed,
+    };
+    let names: Vec<String> = scene
+        .phases
+        .iter()
+        .map(|phase| phase.name.clone())
+        .collect();
+    let writer = Writer::create(&options.out, &header, &plan, &names, &scene.start.grains)?;
+    let steps = scene
+        .phases
+        .iter()
+        .map(|phase| expected_steps(scene, phase));
+    let mut run = Run {
+        scene,
+        options,
+        stop,
+        writer,
+        progress: Progress::new(options.quiet, steps.collect()),
+        intervals: Intervals::new(&scene.output, scene.step),
+        header,
+        past: scene.past.clone(),
+        pace: Pace::default(),
+    };
+    let begun = Instant::now();
+    let mut state = scene.start.clone();
+    let mut phases: Vec<PhaseSummary> = Vec::new();
+    let mut failed = None;
+    for number in 0..scene.phases.len() {
+        match run.phase(number, state) {
+            Ok((reached, summary)) => {
+                state = reached;
+                run.progress.phase_done(&summary.to_string());
+                let stopped = summary.outcome == Outcome::Stopped;
+                phases.push(summary);
+                if stopped {
+                    break;
+                }
+            }
+            Err(error) => {
+                failed = Some(error);
+                break;
+            }
+        }
+    }
+    // What was computed before an error is on disk too.
+    run.progress.finish();
+    run.writer.finish()?;
+    match failed {
+        Some(error) => Err(error),
+        None => Ok(Summary {
+            grains: scene.start.grains.len(),
+            phases,
+            seconds: begun.elapsed().as_secs_f64(),
+            out: options.out.clone(),
+        }),
+    }
+}
+
+/// See that the folder holds no result.
+fn check_room(out: &Path, force: bool) -> Result<()> {
+    let mut paths = FILES.iter().map(|name| out.join(name));
+    if let (Some(first), false) = (paths.find(|path| path.exists()), force) {
+        bail!(
+            "{} exists; choose another folder with --out, or replace it with --force",
+            first.display()
+        );
+    }
+    Ok(())
+}
+
+/// See that the first phase can begin: what is refused later has cost the old results.
+fn check_start(scene: &Scene, threads: usize) -> Result<()> {
+    let phase = &scene.phases[0];
+    let reference = scene.past.reference_of(phase);
+    let Prepared { model, state, .. } =
+        protocol::prepare(scene, phase, scene.start.clone(), reference)?;
+    let solver = Solver::new(model, state, threads);
+    solver.with_context(|| format!("phase {}", phase.name))?;
+    Ok(())
+}
+
+/// Make the folder, and remove old results from it. An old state stays until the new one
+/// replaces it: this run may have started from it.
+fn make_room(out: &Path) -> Result<()> {
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    let old = FILES.iter().filter(|&&name| name != STATE);
+    for path in old.map(|name| out.join(name)).filter(|p| p.exists()) {
+        let removed = std::fs::remove_file(&path);
+        removed.with_context(|| format!("cannot remove {}", path.display()))?;
+    }
+    Ok(())
+}
+
+/// Which variables, and the layers of the profiles: from the bottom to a little above the
+/// bed as it will be when settled.
+fn plan(scene: &Scene) -> Result<Plan> {
+    let grains = &scene.start.grains;
+    let names = |file: &Option<crate::scene::output::File>| {
+        file.as_ref().map(|file| file.variables.clone())
+    };
+    let layer = scene.output.layer.unwrap_or(2.0 * grains.mean_radius());
+    let settled = solid_volume(grains) / (LOOSEST * scene.domain.area());
+    // A bed that comes settled from a file may be higher than its own volume says.
+    let height = if scene.start.contacts.is_empty() {
+        settled
+    } else {
+        protocol::bed_height(&scene.start).max(settled)
+    };
+    let count = (height / layer).ceil().max(1.0) as usize;
+    ensure!(
+        count <= MOST_LAYERS,
+        "output.profiles.layer: {layer} m cuts the bed into {count} layers, more than \
+         {MOST_LAYERS}; write e.g. one diameter, {:.1e} m",
+        2.0 * grains.mean_radius()
+    );
+    Ok(Plan {
+        series: names(&scene.output.series),
+        profiles: names(&scene.output.profiles),
+        grains: names(&scene.output.grains),
+        contacts: names(&scene.output.contacts),
+        profile_edges: (0..=count).map(|k| k as f64 * layer).collect(),
+    })
+}
+
+/// Layers of a profile; more tell nothing about grains, and fill the disk.
+const MOST_LAYERS: usize = 100_000;
+
+/// Solid fraction of the loosest bed that carries a load: spheres at high friction jam at
+/// 0.55.
+const LOOSEST: f64 = 0.5;
+
+fn solid_volume(grains: &dem::Grains) -> f64 {
+    (0..grains.len()).map(|k| grains.volume(k)).sum()
+}
+
+/// Number of steps of `phase` at most, where the height of its bed can only be guessed.
+pub fn expected_steps(scene: &Scene, phase: &Phase) -> u64 {
+    let guess = solid_volume(&scene.start.grains) / (0.6 * scene.domain.area());
+    let model = protocol::model(scene, phase, guess);
+    longest(phase, &model, guess)
+}
+
+/// Number of steps after which `phase` ends for certain.
+fn longest(phase: &Phase, model: &Model, height: f64) -> u64 {
+    let of_strain = match (model.drive, phase.end.strain) {
+        (Some(Drive::Velocity(v)), Some(strain)) => strain * height / v.abs(),
+        _ => f64::INFINITY,
+    };
+    (phase.end.duration.min(of_strain) / model.step).ceil() as u64
+}
+
+struct Run<'a> {
+    scene: &'a Scene,
+    options: &'a Options,
+    stop: &'a AtomicBool,
+    writer: Writer,
+    progress: Progress,
+    intervals: Intervals,
+    header: Header,
+    /// What came before the state that the next phase is handed.
+    past: Past,
+    pace: Pace,
+}
+
+impl Run<'_> {
+    /// Run one phase from `state`; returns the state at its end, which is on disk then.
+    fn phase(&mut self, number: usize, state: State) -> Result<(State, PhaseSummary)> {
+        let phase = &self.scene.phases[number];
+        let in_phase = || format!("phase {}", phase.name);
+        let goes_on = self.past.reference_of(phase);
+        let Prepared {
+            model,
+            state,
+            height,
+        } = protocol::prepare(self.scene, phase, state, goes_on)?;
+        let reference = goes_on.unwrap_or_else(|| Reference {
+            time: state.time,
+            height,
+            way: protocol::driven_way(&state),
+            strain: self.past.strain,
+        });
+        // Steps of this phase that were made before it was stopped.
+        let mut done = ((state.time - reference.time) / model.step).round() as u64;
+        let total = longest(phase, &model, height).max(done.saturating_add(1));
+        self.progress.begin(number, phase, total);
+        let mut watch = RestWatch::new(phase, &model, &state);
+        let mut bed = Bed {
+            number,
+            reference,
+            before: Sums::default(),
+            readings: Vec::new(),
+        };
+        let mut solver = Solver::new(model, state, self.options.threads).with_context(in_phase)?;
+        let model = Arc::new(solver.model().clone());
+        if number == 0 {
+            let now = Arc::new(solver.snapshot());
+            self.writer.send(bed.frame(&model, &now, Due::START))?;
+        }
+        loop {
+            let next = self.intervals.next(done).min(watch.next(done)).min(total);
+            let goal = next.min(done + self.pace.steps());
+            self.pace
+                .time(goal - done, || solver.advance(goal - done))
+                .with_context(in_phase)?;
+            done = goal;
+            self.progress
+                .at(done, solver.model().step, self.pace.steps_per_second());
+
+            let mut due = self.intervals.due(done);
+            let look = done == watch.next(done - 1);
+            let stopped = self.stop.load(Ordering::Relaxed);
+            if !(due.any() || look || stopped || done == total) {
+                continue;
+            }
+            let now = Arc::new(solver.snapshot());
+            let room = protocol::wall_height(&now.state);
+            ensure!(
+                room > now.state.grains.mean_radius(),
+                "phase {}: the top wall stands at {room:.4e} m, less than a grain above the \
+                 bottom; it went through the bed. Move it more slowly or for a shorter time",
+                phase.name
+            );
+            let outcome = if done == total {
+                Some(bed.end_of_time(phase, &now))
+            } else if look && watch.at_rest(&now) {
+                Some(Outcome::AtRest)
+            } else if look
+                && phase
+                    .end
+                    .strain
+                    .is_some_and(|s| bed.own_strain(&now).abs() >= s)
+            {
+                Some(Outcome::Strain)
+            } else if stopped {
+                Some(Outcome::Stopped)
+            } else {
+                None
+            };
+            if outcome.is_some() {
+                due = self.intervals.last();
+            }
+            if due.any() {
+                self.writer.send(bed.frame(&model, &now, due))?;
+                bed.read(due, &now);
+            }
+            if let Some(outcome) = outcome {
+                self.past = Past {
+                    strain: bed.strain(&now),
+                    unfinished: (outcome == Outcome::Stopped).then(|| Unfinished {
+                        phase: phase.name.clone(),
+                        reference,
+                    }),
+                };
+                let saved = Saved {
+                    state: now.state.clone(),
+                    domain: self.scene.domain,
+                    past: self.past.clone(),
+                };
+                output::state::save(&self.options.out.join(STATE), &saved, &self.header)?;
+                let summary = bed.summary(self.scene, phase, outcome, done, &now);
+                return Ok((saved.state, summary));
+            }
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! `[grains]`: drawn at random, or from a bed or a state in a file.
+
+use super::reader::{Range, Reader, Table};
+use super::units::{DENSITY, LENGTH};
+use crate::start::{RadiusLaw, Source};
+
+const GRAINS: &str = "[grains] with count = 1000, radius = \"10 mm\", density = \"2600 kg/m^3\"";
+const RADIUS: &str = "radius = { law = \"uniform\", min = \"9 mm\", max = \"11 mm\" }";
+
+/// Read `[grains]` and the file that it names.
+pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
+    root.missing("grains", GRAINS);
+    let table = root.table("grains", GRAINS)?;
+    let folder = &reader.document().folder;
+    match table.present(&["state", "bed"])[..] {
+        [] => random(&table),
+        ["state"] => {
+            let why = "stands in the state that is read";
+            table.refuse(&["count", "radius", "density"], why);
+            let path = folder.join(table.text("state")?);
+            let saved = crate::output::state::load(&path)
+                .map_err(|error| table.wrong("state", format!("cannot be read: {error:#}")))
+                .ok()?;
+            if saved.state.grains.is_empty() {
+                table.wrong("state", "holds no grain".into());
+                return None;
+            }
+            Some(Source::State(Box::new(saved)))
+        }
+        ["bed"] => {
+            table.refuse(&["count", "radius"], "stands in the bed that is read");
+            let density = density(&table);
+            let path = folder.join(table.text("bed")?);
+            let bed = crate::bed::read(&path)
+                .map_err(|error| table.wrong("bed", format!("cannot be read: {error:#}")))
+                .ok()?;
+            if bed.radius.is_empty() {
+                table.wrong("bed", "holds no grain".into());
+                return None;
+            }
+            Some(Source::Bed {
+                bed,
+                density: density?,
+            })
+        }
+        _ => {
+            table.refuse(
+                &["count", "radius", "density"],
+                "stands in the file that is read",
+            );
+            table.wrong("bed", "contradicts state; remove one of them".into());
+            None
+        }
+    }
+}
+
+fn density(table: &Table) -> Option<f64> {
+    table.missing("density", "density = \"2600 kg/m^3\"");
+    table.quantity("density", &DENSITY, Range::Positive)
+}
+
+/// Beyond what memory holds anywhere, and below the 134 million rows that the neighbour
+/// lists of `dem` can number.
+const MOST: i64 = 100_000_000;
+
+fn random(table: &Table) -> Option<Source> {
+    let density = density(table);
+    let law = radius(table);
+    let stated = table.integer("count", 1, "1000");
+    // A list without a count is taken grain by grain.
+    let of_list = match &law {
+        Some(RadiusLaw::Listed { values, .. }) => Some(values.len() as i64),
+        Some(_) => None,
+        // What could not be read may have been a list.
+        None => Some(1),
+    };
+    if of_list.is_none() {
+        table.missing("count", "count = 1000");
+    }
+    let count = if table.has("count") {
+        stated?
+    } else {
+        of_list?
+    };
+    if count > MOST {
+        table.wrong(
+            "count",
+            format!("is {count}; at most {MOST} grains fit one run"),
+        );
+        return None;
+    }
+    Some(Source::Loose {
+        count: count as usize,
+        law: law?,
+        density: density?,
+    })
+}
+
+#[derive(Clone, Copy)]
+enum Law {
+    Single,
+    Uniform,
+    LogNormal,
+    Listed,
+}
+
+fn radius(table: &Table) -> Option<RadiusLaw> {
+    table.missing("radius", RADIUS);
+    if !table.is_table("radius") {
+        let radius = table.quantity("radius", &LENGTH, Range::Positive);
+        return radius.map(RadiusLaw::Single);
+    }
+    let table = table.table("radius", RADIUS)?;
+    let laws = [
+        ("single", Law::Single),
+        ("uniform", Law::Uniform),
+        ("log-normal", Law::LogNormal),
+        ("listed", Law::Listed),
+    ];
+    if !table.has("law") {
+        table.missing(
+            "law",
+            "law = \"uniform\", or \"single\", \"log-normal\", \"listed\"",
+        );
+        // Which other keys may stand here depends on the law.
+        table.present(&[
+            "value", "min", "max", "median", "spread", "values", "shares",
+        ]);
+        return None;
+    }
+    let law = table.choice("law", &laws);
+    let Some(law) = law else {
+        table.present(&[
+            "value", "min", "max", "median", "spread", "values", "shares",
+        ]);
+        return None;
+    };
+    let length = |key, example: &str| {
+        table.missing(key, example);
+        table.quantity(key, &LENGTH, Range::Positive)
+    };
+    match law {
+        Law::Single => length("value", "value = \"10 mm\"").map(RadiusLaw::Single),
+        Law::Uniform => {
+            let min = length("min", "min = \"9 mm\"");
+            let max = length("max", "max = \"11 mm\"");
+            let (min, max) = (min?, max?);
+            if min > max {
+                table.wrong("min", "is above max; exchange them".into());
+                return None;
+            }
+            Some(RadiusLaw::Uniform { min, max })
+        }
+        Law::LogNormal => {
+            let median = length("median", "median = \"10 mm\"");
+            table.missing("spread", "spread = 0.3 (standard deviation of ln R)");
+            let spread = table.number("spread", Range::Above(0.0, 10.0), "0.3");
+            let min = table.quantity("min", &LENGTH, Range::Positive);
+            let max = table.quantity("max", &LENGTH, Range::Positive);
+            let (median, spread) = (median?, spread?);
+            // Two standard deviations hold 95 % of the grains.
+            let min = min.unwrap_or(median * (-2.0 * spread).exp());
+            let max = max.unwrap_or(median * (2.0 * spread).exp());
+            // About 0.4 ln(max / min) / spread of the draws fall between the two.
+            if (max / min).ln() < 0.01 * spread {
+                let what = "is so large that hardly a radius falls between min and max";
+                table.wrong("spread", format!("{what}; write law = \"uniform\""));
+                return None;
+            }
+            if min >= median || max <= median {
+                let what = "is not between min and max; write e.g. min = median / 3";
+                table.wrong("median", what.into());
+                return None;
+            }
+            Some(RadiusLaw::LogNormal {
+                median,
+                spread,
+                min,
+                max,
+            })
+        }
+        Law::Listed => {
+            table.missing("values", "values = [\"5 mm\", \"10 mm\"]");
+            let values = table.quantities("values", &LENGTH, Range::Positive);
+            let example = "shares = [0.7, 0.3], the shares of the number of grains";
+            let shares = table.numbers("shares", Range::NotNegative, example);
+            let values = values?;
+            if values.is_empty() {
+                table.wrong(
+                    "values",
+                    "is empty; write e.g. [\"5 mm\", \"10 mm\"]".into(),
+                );
+                return None;
+            }
+            let shares = shares.unwrap_or_else(|| vec![1.0; values.len()]);
+            if shares.len() != values.len() {
+                let (n, m) = (shares.len(), values.len());
+                table.wrong(
+                    "shares",
+                    format!("has {n} entries for {m} values; write {m}"),
+                );
+                return None;
+            }
+            if shares.iter().sum::<f64>() <= 0.0 {
+                table.wrong("shares", "are all zero; write e.g. [0.7, 0.3]".into());
+                return None;
+            }
+            Some(RadiusLaw::Listed { values, shares })
+        }
+    }
+}

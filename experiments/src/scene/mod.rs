@@ -1,0 +1,203 @@
+//! Scenes: one TOML file becomes a checked [`Scene`] of plain SI numbers, or the list of
+//! everything that is wrong with it.
+//!
+//! The text becomes a [tree] that knows its lines; [readers](reader) take it section
+//! by section, note every problem and go on; and what depends on the grains (restitution,
+//! the wall's mass, the time step) is worked out at the end.
+
+pub mod bounds;
+pub mod contact;
+pub mod document;
+pub mod grains;
+pub mod output;
+pub mod phase;
+pub mod problem;
+pub mod reader;
+pub mod time;
+pub mod tree;
+pub mod units;
+
+pub use document::Document;
+pub use output::Output;
+pub use phase::{End, Motion, Phase, Shear};
+pub use problem::{Problem, Problems};
+
+use crate::protocol::Past;
+use crate::start::Source;
+use dem::contact::{Linear, Tension};
+use dem::{ContactLaw, Domain, State, Surface};
+use reader::{Reader, Table};
+
+/// A checked scene, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// One line that says what it is.
+    pub title: String,
+    /// What it asks.
+    pub question: Option<String>,
+    /// Where its numbers come from.
+    pub source: Option<String>,
+    /// Seed of all that is random.
+    pub seed: u64,
+    /// The box along x and y.
+    pub domain: Domain,
+    /// How the top wall touches grains.
+    pub top: Surface,
+    /// How the bottom wall touches grains.
+    pub bottom: Surface,
+    /// The state at the start.
+    pub start: State,
+    /// What came before it.
+    pub past: Past,
+    /// Time step [s].
+    pub step: f64,
+    /// Surplus of the neighbour search [m]; none: chosen as it goes.
+    pub skin: Option<f64>,
+    /// The protocol.
+    pub phases: Vec<Phase>,
+    /// The files.
+    pub output: Output,
+    /// The text it was read from, with all `--set` in it and, as a comment, what was chosen
+    /// where it says nothing.
+    pub text: String,
+}
+
+impl Scene {
+    /// Read and check a scene.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn read(document: &Document) -> Result<Self, Problems> {
+        let reader = Reader::new(document);
+        let scene = read(&reader);
+        match (scene, reader.problems()) {
+            (Some(scene), Problems(none)) if none.is_empty() => Ok(scene),
+            (None, Problems(none)) if none.is_empty() => {
+                unreachable!("whatever cannot be read is noted as a problem")
+            }
+            (_, problems) => Err(problems),
+        }
+    }
+}
+
+/// Title of a scene without checking the rest.
+pub fn title(document: &Document) -> Option<&str> {
+    document.root.text_of("title")
+}
+
+fn read(reader: &Reader) -> Option<Scene> {
+    let root = reader.root();
+    root.missing("title", "title = \"Dry shear of a coarse till\"");
+    let title = root.text("title");
+    let question = root.text("question");
+    let source = root.text("source");
+    let seed = root.integer("seed", 0, "1").unwrap_or(1) as u64;
+
+    let origin = grains::read(&root, reader);
+    let (made_in, past) = match &origin {
+        Some(Source::Bed { bed, .. }) => (bounds::MadeIn::of_bed(bed.size), Past::default()),
+        Some(Source::State(saved)) => (bounds::MadeIn::State(saved.domain), saved.past.clone()),
+        _ => (bounds::MadeIn::Nothing, Past::default()),
+    };
+    let bounds = bounds::read(&root, made_in);
+    let grains = origin.as_ref().map(|origin| origin.grains(seed));
+
+    // Where something above is wrong, numbers that do no harm stand in for it, so that the
+    // rest is still checked.
+    let mass: f64 = grains.as_ref().map_or(1.0, |g| g.mass.iter().sum());
+    let count = grains.as_ref().map_or(1.0, |g| g.len() as f64);
+    let volume = grains
+        .as_ref()
+        .map_or(1.0, |g| (0..g.len()).map(|k| g.volume(k)).sum());
+    let diameter = grains.as_ref().map_or(1.0, largest_diameter);
+    let law = contact::read(&root, mass / count);
+    let area = bounds.map_or(1.0, |b| b.domain.area());
+    let context = phase::Context {
+        area,
+        mass,
+        tallest: volume / (crate::start::LOOSE_FRACTION * area),
+        density: mass / volume,
+        diameter,
+        law: law.unwrap_or(HARMLESS),
+        gravity: bounds.map_or(glam::DVec3::ZERO, |b| b.gravity),
+    };
+    let phases = phase::read(&root, &context);
+    let output = output::read(&root, &phases);
+    let [top, bottom] = walls(&root);
+    let time = time::read(&root);
+    let (origin, grains, bounds) = (origin?, grains?, bounds?);
+    let (output, _) = (output?, law?);
+    if phases.is_empty() || !check_width(reader, &bounds.domain, diameter) {
+        return None;
+    }
+    let start = origin
+        .place(grains, &bounds.domain, bounds.height, seed)
+        .map_err(|message| reader.wrong(&["box", "size"], message))
+        .ok();
+    let mut scene = Scene {
+        title: title.unwrap_or_default().into(),
+        question: question.map(Into::into),
+        source: source.map(Into::into),
+        seed,
+        domain: bounds.domain,
+        top,
+        bottom,
+        start: start?,
+        past,
+        step: f64::NAN, // until `settle`
+        skin: time.skin,
+        phases,
+        output,
+        text: reader.document().text.clone(),
+    };
+    time::settle(&mut scene, time.step)
+        .map_err(|message| reader.wrong(&["time", "step"], message))
+        .ok()?;
+    output::check(&scene.output, scene.step, reader);
+    Some(scene)
+}
+
+const HARMLESS: ContactLaw = ContactLaw::Linear(Linear {
+    normal_stiffness: 1.0,
+    normal_damping: 0.0,
+    tension: Tension::Clip,
+    sliding: None,
+    rolling: None,
+    twisting: None,
+});
+
+fn largest_diameter(grains: &dem::Grains) -> f64 {
+    2.0 * grains.radius.iter().copied().fold(0.0, f64::max)
+}
+
+fn walls(root: &Table) -> [Surface; 2] {
+    let words = [
+        ("frictionless", Surface::Frictionless),
+        ("full", Surface::Full),
+    ];
+    let Some(walls) = root.table("wall", "[wall.top] with surface = \"full\"") else {
+        return [Surface::default(); 2];
+    };
+    ["top", "bottom"].map(|key| {
+        let wall = walls.table(key, "[wall.top] with surface = \"full\"");
+        let surface = wall.and_then(|wall| wall.choice("surface", &words));
+        surface.unwrap_or_default()
+    })
+}
+
+/// Across a periodic side a grain must not meet two images of the same neighbour.
+fn check_width(reader: &Reader, domain: &Domain, diameter: f64) -> bool {
+    let narrow = (0..2).find_map(|side| {
+        let least = if domain.periodic[side] { 2.5 } else { 1.0 } * diameter;
+        (domain.size[side] < least).then_some((side, least))
+    });
+    if let Some((side, least)) = narrow {
+        let (size, along) = (domain.size[side], ["x", "y"][side]);
+        let message = format!(
+            "is {size} m along {along}, too narrow for grains of {diameter} m; write {least:.4} m \
+             or more"
+        );
+        reader.wrong(&["box", "size"], message);
+    }
+    narrow.is_none()
+}

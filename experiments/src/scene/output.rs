@@ -1,0 +1,204 @@
+//! `[output]`: which files, which variables, how often.
+
+use super::phase::{End, Phase};
+use super::reader::{Range, Reader, Table};
+use super::units::{LENGTH, TIME};
+
+/// The files of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// `series.nc`; none: not written.
+    pub series: Option<File>,
+    /// `profiles.nc`.
+    pub profiles: Option<File>,
+    /// `grains.nc`.
+    pub grains: Option<File>,
+    /// `contacts.nc`.
+    pub contacts: Option<File>,
+    /// Thickness of the profiles' layers [m]; none: one mean diameter.
+    pub layer: Option<f64>,
+}
+
+/// One file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct File {
+    /// Time between rows [s].
+    pub every: f64,
+    /// Names of its variables.
+    pub variables: Vec<String>,
+}
+
+impl Output {
+    /// Does any variable need the sums of the energy ledger?
+    pub fn needs_ledger(&self) -> bool {
+        let series = self.series.iter().flat_map(|file| &file.variables);
+        series.into_iter().any(|name| needs_sums(name))
+    }
+}
+
+/// A file cannot have more than a row a step of `step` [s].
+pub fn check(output: &Output, step: f64, reader: &Reader) {
+    let files = [
+        ("series", &output.series),
+        ("profiles", &output.profiles),
+        ("grains", &output.grains),
+        ("contacts", &output.contacts),
+    ];
+    for (key, file) in files {
+        if let Some(every) = file.as_ref().map(|file| file.every)
+            && every < step
+        {
+            let message = format!("is {every:e} s, shorter than the time step of {step:e} s");
+            let message = format!("{message}; write e.g. every = \"1 ms\"");
+            reader.wrong(&["output", key, "every"], message);
+        }
+    }
+}
+
+/// Energies of the instant are read from the state; the others are summed step by step.
+fn needs_sums(name: &str) -> bool {
+    ["dissipated_", "work_", "energy_residual"]
+        .iter()
+        .any(|start| name.starts_with(start))
+}
+
+/// What a file is unless the scene says otherwise.
+struct Default {
+    key: &'static str,
+    example: &'static str,
+    /// Rows over the whole protocol; none: the file is not written unless asked for.
+    rows: Option<f64>,
+    /// All variables that it knows.
+    variables: Vec<&'static str>,
+}
+
+/// Read `[output]`; `phases` set the default intervals.
+pub fn read(root: &Table, phases: &[Phase]) -> Option<Output> {
+    let total: f64 = phases.iter().map(expected).sum();
+    let table = root.table("output", "[output] with series = { every = \"1 ms\" }");
+    if root.has("output") && table.is_none() {
+        return None;
+    }
+    let table = table.as_ref();
+    let series = Default {
+        key: "series",
+        example: "series = { every = \"1 ms\" }",
+        rows: Some(1000.0),
+        variables: series_names(),
+    };
+    let profiles = Default {
+        key: "profiles",
+        example: "profiles = { every = \"10 ms\" }",
+        rows: Some(100.0),
+        variables: names(dem::output::PROFILES),
+    };
+    let grains = Default {
+        key: "grains",
+        example: "grains = { every = \"50 ms\" }",
+        rows: Some(20.0),
+        variables: names(dem::output::GRAINS),
+    };
+    let contacts = Default {
+        key: "contacts",
+        example: "contacts = { every = \"0.1 s\" }",
+        rows: None,
+        variables: names(dem::output::CONTACTS),
+    };
+    let (profiles, layer) = file(table, &profiles, total);
+    Some(Output {
+        series: file(table, &series, total).0,
+        profiles,
+        grains: file(table, &grains, total).0,
+        contacts: file(table, &contacts, total).0,
+        layer,
+    })
+}
+
+fn series_names() -> Vec<&'static str> {
+    let all = crate::output::catalogue::series();
+    all.map(|series| series.variable().name).collect()
+}
+
+fn names(fields: &[dem::output::Field]) -> Vec<&'static str> {
+    fields.iter().map(|field| field.variable.name).collect()
+}
+
+/// About how long a phase lasts [s]; a tenth of `max_duration` where a criterion ends it.
+fn expected(phase: &Phase) -> f64 {
+    use super::phase::Shear;
+    let End {
+        duration,
+        strain,
+        at_rest,
+    } = phase.end;
+    let of_strain = match (phase.shear, strain) {
+        (Some(Shear::StrainRate(rate)), Some(strain)) => (strain / rate).abs(),
+        _ => f64::INFINITY,
+    };
+    let known = if at_rest.is_some() {
+        0.1 * duration
+    } else {
+        duration
+    };
+    let expected = known.min(of_strain);
+    // A velocity without a height yet: some seconds, as good as any guess.
+    if expected.is_finite() { expected } else { 10.0 }
+}
+
+/// The file and the thickness of its layers, of which only profiles may speak.
+fn file(table: Option<&Table>, default: &Default, total: f64) -> (Option<File>, Option<f64>) {
+    let key = default.key;
+    let stated = table.filter(|table| table.has(key));
+    if stated.is_some_and(|table| table.is_word(key, "none")) {
+        return (None, None);
+    }
+    let Some(outer) = stated else {
+        let file = default.rows.map(|rows| File {
+            every: round(total / rows),
+            variables: default.variables.iter().map(|s| (*s).into()).collect(),
+        });
+        return (file, None);
+    };
+    let Some(table) = outer.table(key, &format!("{}, or \"none\"", default.example)) else {
+        return (None, None);
+    };
+    let every = table.quantity("every", &TIME, Range::Positive);
+    let layer = (key == "profiles")
+        .then(|| table.quantity("layer", &LENGTH, Range::Positive))
+        .flatten();
+    let example = format!(
+        "variables = {:?}",
+        &default.variables[..default.variables.len().min(2)]
+    );
+    let variables = table.texts("variables", &example);
+    for name in variables.iter().flatten() {
+        if !default.variables.contains(name) {
+            let known = default.variables.join(", ");
+            table.wrong(
+                "variables",
+                format!("{name:?} is not known; there are: {known}"),
+            );
+        }
+    }
+    let all = || default.variables.iter().map(|s| (*s).into()).collect();
+    let rows = default.rows.unwrap_or(20.0);
+    let file = File {
+        every: every.unwrap_or_else(|| round(total / rows)),
+        variables: variables.map_or_else(all, |names| names.iter().map(|s| (*s).into()).collect()),
+    };
+    (Some(file), layer)
+}
+
+/// The next of 1, 2, 5 times a power of ten below `x`.
+fn round(x: f64) -> f64 {
+    let power = 10f64.powf(x.log10().floor());
+    let digit = x / power;
+    let digit = if digit >= 5.0 {
+        5.0
+    } else if digit >= 2.0 {
+        2.0
+    } else {
+        1.0
+    };
+    digit * power
+}
