@@ -1,0 +1,3 @@
+//! Are they the right equations? Statistics of beds against independent runs.
+
+mod plane_shear;
