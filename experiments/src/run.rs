@@ -164,7 +164,7 @@ fn plan(scene: &Scene) -> Result<Plan> {
     let names = |file: &Option<crate::scene::output::File>| {
         file.as_ref().map(|file| file.variables.clone())
     };
-    let layer = scene.output.layer.unwrap_or(2.0 * grains.mean_radius());
+    let layer = scene.output.layer;
     let settled = solid_volume(grains) / (LOOSEST * scene.domain.area());
     // A bed that comes settled from a file may be higher than its own volume says.
     let height = if scene.start.contacts.is_empty() {

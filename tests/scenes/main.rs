@@ -4,6 +4,7 @@ mod bad;
 mod meaning;
 mod protocol;
 mod ready_made;
+mod resolved;
 
 use experiments::scene::{Document, Problems, Scene};
 use std::path::Path;

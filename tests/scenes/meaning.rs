@@ -143,12 +143,3 @@ fn the_ledger_is_kept_for_every_variable_that_needs_it() {
         assert_eq!(value(&model) && !ever, kept, "{name}");
     }
 }
-
-#[test]
-fn the_text_that_a_result_carries_gives_the_same_scene() {
-    let sets = ["grains.radius={ law = \"log-normal\", median = \"0.5 mm\", spread = 0.2 }"];
-    let scene = read(SMALL, &sets).unwrap();
-    let again = read(&scene.text, &[]).unwrap();
-    assert_eq!(scene.start, again.start);
-    assert_eq!(scene.step, again.step);
-}

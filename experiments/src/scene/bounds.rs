@@ -50,18 +50,12 @@ impl MadeIn {
 /// Read `[box]`; what it leaves out is that of the box that the grains were made in.
 pub fn read(root: &Table, made_in: MadeIn) -> Option<Bounds> {
     let example = "[box] with size = [\"0.2 m\", \"0.2 m\"] (x along shear, y)";
-    if !root.has("box") {
-        if let Some(domain) = made_in.domain() {
-            return Some(Bounds {
-                domain,
-                height: None,
-                gravity: -EARTH * DVec3::Z,
-            });
-        }
+    let made = made_in.domain();
+    if made.is_none() && !root.has("box") {
         root.missing("box", example);
         return None;
     }
-    let table = root.table("box", example)?;
+    let table = root.table_or_empty("box", example)?;
     let size = table.quantities("size", &LENGTH, Range::Positive);
     let stated = match size.as_deref() {
         Some([x, y]) => Some(([*x, *y], None)),
@@ -80,9 +74,15 @@ pub fn read(root: &Table, made_in: MadeIn) -> Option<Bounds> {
         }
         None => None,
     };
-    let made = made_in.domain();
     let periodic = sides(&table, made_in);
     let gravity = gravity(&table);
+    if gravity.is_none() && !table.has("gravity") {
+        table.choose("gravity", ACCELERATION.write(EARTH));
+    }
+    if let Some(made) = made.filter(|_| !table.has("size")) {
+        let size = made.size.map(|length| LENGTH.write(length));
+        table.choose("size", toml_edit::Array::from_iter(size));
+    }
     let of_file = made.map(|domain| (domain.size, None));
     let (mut size, height) = stated.or(of_file)?;
     if let Some(made) = made {
@@ -121,11 +121,12 @@ pub fn read(root: &Table, made_in: MadeIn) -> Option<Bounds> {
 fn sides(table: &Table, made_in: MadeIn) -> [bool; 2] {
     let words = [("periodic", true), ("walls", false)];
     let default = made_in.domain().map_or([true; 2], |made| made.periodic);
-    let Some(sides) = table.table("sides", "sides = { x = \"periodic\", y = \"walls\" }") else {
+    let example = "sides = { x = \"periodic\", y = \"walls\" }";
+    let Some(sides) = table.table_or_empty("sides", example) else {
         return default;
     };
     let side = |key, default: bool| {
-        let stated = sides.choice(key, &words).unwrap_or(default);
+        let stated = sides.choice_or(key, &words, default);
         if matches!(made_in, MadeIn::State(_)) && stated != default {
             let name = if default { "periodic" } else { "walls" };
             let what = format!("is not what the state was made with, {name:?}; leave it out");
@@ -161,6 +162,9 @@ pub fn gravity(table: &Table) -> Option<DVec3> {
     let g = table.quantity("gravity", &ACCELERATION, Range::NotNegative);
     if g.is_none() && tilt.is_none() {
         return None;
+    }
+    if !table.has("gravity") {
+        table.choose("gravity", ACCELERATION.write(EARTH));
     }
     let (sin, cos) = tilt.unwrap_or(0.0).sin_cos();
     Some(g.unwrap_or(EARTH) * DVec3::new(sin, 0.0, -cos))

@@ -36,7 +36,7 @@ pub fn read(root: &Table, mean_mass: f64) -> Option<ContactLaw> {
         ("linear", Name::Linear),
         ("linear-lammps", Name::LinearLammps),
     ];
-    let name = table.choice("law", &names).unwrap_or(Name::Linear);
+    let name = table.choice_or("law", &names, Name::Linear);
     match name {
         Name::Linear => linear(&table, mean_mass).map(ContactLaw::Linear),
         Name::LinearLammps => linear_lammps(&table, mean_mass).map(ContactLaw::LinearLammps),
@@ -45,7 +45,7 @@ pub fn read(root: &Table, mean_mass: f64) -> Option<ContactLaw> {
 
 fn linear(table: &Table, mean_mass: f64) -> Option<Linear> {
     let words = [("clip", Tension::Clip), ("keep", Tension::Keep)];
-    let tension = table.choice("tension", &words).unwrap_or_default();
+    let tension = table.choice_or("tension", &words, Tension::default());
     let normal = normal(table, mean_mass, tension == Tension::Clip);
     let stiffness = normal.map(|(stiffness, _)| stiffness);
     let sliding = tangential(table, stiffness);
@@ -112,7 +112,12 @@ fn normal(table: &Table, mean_mass: f64, clipped: bool) -> Option<(f64, f64)> {
         _ => {}
     }
     let stiffness = stiffness?;
-    let of_restitution = |e| damping_for(e, stiffness, 0.5 * mean_mass, clipped);
+    let of_restitution = |e| {
+        let damping = damping_for(e, stiffness, 0.5 * mean_mass, clipped);
+        normal.leave_out("restitution");
+        normal.choose("damping", DAMPING.write(damping));
+        damping
+    };
     Some((stiffness, damping.or(restitution.map(of_restitution))?))
 }
 
@@ -125,14 +130,19 @@ fn tangential(table: &Table, normal_stiffness: Option<f64>) -> Option<Sliding> {
         &format!("{TANGENTIAL}, or tangential = \"none\""),
     );
     let tangential = table.table("tangential", &format!("{TANGENTIAL}, or \"none\""))?;
-    let stiffness = tangential.quantity("stiffness", &STIFFNESS, Range::Positive);
-    let damping = tangential.quantity("damping", &DAMPING, Range::NotNegative);
+    // 2/7: both springs of a free pair of solid spheres then swing alike.
+    let stiffness = match normal_stiffness {
+        Some(k) => {
+            Some(tangential.quantity_or("stiffness", &STIFFNESS, Range::Positive, 2.0 / 7.0 * k))
+        }
+        None => tangential.quantity("stiffness", &STIFFNESS, Range::Positive),
+    };
+    let damping = tangential.quantity_or("damping", &DAMPING, Range::NotNegative, 0.0);
     tangential.missing("friction", "friction = 0.5");
     let friction = friction(&tangential)?;
     Some(Sliding {
-        // 2/7: both springs of a free pair of solid spheres then swing alike.
-        stiffness: stiffness.or(normal_stiffness.map(|k| 2.0 / 7.0 * k))?,
-        damping: damping.unwrap_or(0.0),
+        stiffness: stiffness?,
+        damping,
         friction_static: friction.at_rest,
         friction_dynamic: friction.sliding,
     })
@@ -171,7 +181,11 @@ pub fn friction(table: &Table) -> Option<Friction> {
 }
 
 fn turning(table: &Table, key: &'static str) -> Option<Turning> {
-    if !table.has(key) || table.is_word(key, "none") {
+    if !table.has(key) {
+        table.choose(key, "none");
+        return None;
+    }
+    if table.is_word(key, "none") {
         return None;
     }
     let example = format!("{key} = {TURNING}, or {key} = \"none\"");
@@ -179,11 +193,11 @@ fn turning(table: &Table, key: &'static str) -> Option<Turning> {
     turning.missing("stiffness", "stiffness = \"1e5 N/m\"");
     turning.missing("friction", "friction = 0.1");
     let stiffness = turning.quantity("stiffness", &STIFFNESS, Range::Positive);
-    let damping = turning.quantity("damping", &DAMPING, Range::NotNegative);
+    let damping = turning.quantity_or("damping", &DAMPING, Range::NotNegative, 0.0);
     let friction = turning.number("friction", Range::Positive, "0.1");
     Some(Turning {
         stiffness: stiffness?,
-        damping: damping.unwrap_or(0.0),
+        damping,
         friction: friction?,
     })
 }

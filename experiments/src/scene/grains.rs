@@ -3,6 +3,7 @@
 use super::reader::{Range, Reader, Table};
 use super::units::{DENSITY, LENGTH};
 use crate::start::{RadiusLaw, Source};
+use std::path::Path;
 
 const GRAINS: &str = "[grains] with count = 1000, radius = \"10 mm\", density = \"2600 kg/m^3\"";
 const RADIUS: &str = "radius = { law = \"uniform\", min = \"9 mm\", max = \"11 mm\" }";
@@ -18,6 +19,7 @@ pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
             let why = "stands in the state that is read";
             table.refuse(&["count", "radius", "density"], why);
             let path = folder.join(table.text("state")?);
+            say_where(&table, "state", &path);
             let saved = crate::output::state::load(&path)
                 .map_err(|error| table.wrong("state", format!("cannot be read: {error:#}")))
                 .ok()?;
@@ -31,6 +33,7 @@ pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
             table.refuse(&["count", "radius"], "stands in the bed that is read");
             let density = density(&table);
             let path = folder.join(table.text("bed")?);
+            say_where(&table, "bed", &path);
             let bed = crate::bed::read(&path)
                 .map_err(|error| table.wrong("bed", format!("cannot be read: {error:#}")))
                 .ok()?;
@@ -51,6 +54,14 @@ pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
             table.wrong("bed", "contradicts state; remove one of them".into());
             None
         }
+    }
+}
+
+/// The resolved text may be read from another folder.
+fn say_where(table: &Table, key: &'static str, path: &Path) {
+    let full = std::path::absolute(path).ok();
+    if let Some(full) = full.as_deref().and_then(Path::to_str) {
+        table.choose(key, full);
     }
 }
 
@@ -80,6 +91,7 @@ fn random(table: &Table) -> Option<Source> {
     let count = if table.has("count") {
         stated?
     } else {
+        table.choose("count", of_list?);
         of_list?
     };
     if count > MOST {
@@ -155,12 +167,16 @@ fn radius(table: &Table) -> Option<RadiusLaw> {
             let median = length("median", "median = \"10 mm\"");
             table.missing("spread", "spread = 0.3 (standard deviation of ln R)");
             let spread = table.number("spread", Range::Above(0.0, 10.0), "0.3");
-            let min = table.quantity("min", &LENGTH, Range::Positive);
-            let max = table.quantity("max", &LENGTH, Range::Positive);
-            let (median, spread) = (median?, spread?);
+            let (Some(median), Some(spread)) = (median, spread) else {
+                table.present(&["min", "max"]);
+                return None;
+            };
             // Two standard deviations hold 95 % of the grains.
-            let min = min.unwrap_or(median * (-2.0 * spread).exp());
-            let max = max.unwrap_or(median * (2.0 * spread).exp());
+            let bound = |key, sign: f64| {
+                let default = median * (sign * 2.0 * spread).exp();
+                table.quantity_or(key, &LENGTH, Range::Positive, default)
+            };
+            let (min, max) = (bound("min", -1.0), bound("max", 1.0));
             // About 0.4 ln(max / min) / spread of the draws fall between the two.
             if (max / min).ln() < 0.01 * spread {
                 let what = "is so large that hardly a radius falls between min and max";
@@ -192,7 +208,11 @@ fn radius(table: &Table) -> Option<RadiusLaw> {
                 );
                 return None;
             }
-            let shares = shares.unwrap_or_else(|| vec![1.0; values.len()]);
+            let shares = shares.unwrap_or_else(|| {
+                let equal = vec![1.0; values.len()];
+                table.choose("shares", toml_edit::Array::from_iter(equal.clone()));
+                equal
+            });
             if shares.len() != values.len() {
                 let (n, m) = (shares.len(), values.len());
                 table.wrong(

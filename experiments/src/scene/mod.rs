@@ -6,6 +6,7 @@
 //! the wall's mass, the time step) is worked out at the end.
 
 pub mod bounds;
+pub mod choices;
 pub mod contact;
 pub mod document;
 pub mod grains;
@@ -22,11 +23,12 @@ pub use output::Output;
 pub use phase::{End, Motion, Phase, Shear};
 pub use problem::{Problem, Problems};
 
-use crate::protocol::Past;
+use crate::protocol::{self, Past};
 use crate::start::Source;
 use dem::contact::{Linear, Tension};
 use dem::{ContactLaw, Domain, State, Surface};
 use reader::{Reader, Table};
+use tree::Step;
 
 /// A checked scene, SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,8 +59,8 @@ pub struct Scene {
     pub phases: Vec<Phase>,
     /// The files.
     pub output: Output,
-    /// The text it was read from, with all `--set` in it and, as a comment, what was chosen
-    /// where it says nothing.
+    /// The text it was read from, with all `--set` in it and all that was chosen where it says
+    /// nothing: a scene too, which gives the same run to the bit.
     pub text: String,
 }
 
@@ -91,6 +93,9 @@ fn read(reader: &Reader) -> Option<Scene> {
     let title = root.text("title");
     let question = root.text("question");
     let source = root.text("source");
+    if !root.has("seed") {
+        root.choose("seed", 1);
+    }
     let seed = root.integer("seed", 0, "1").unwrap_or(1) as u64;
 
     let origin = grains::read(&root, reader);
@@ -122,7 +127,8 @@ fn read(reader: &Reader) -> Option<Scene> {
         gravity: bounds.map_or(glam::DVec3::ZERO, |b| b.gravity),
     };
     let phases = phase::read(&root, &context);
-    let output = output::read(&root, &phases);
+    let mean_diameter = grains.as_ref().map_or(1.0, |g| 2.0 * g.mean_radius());
+    let output = output::read(&root, &phases, mean_diameter);
     let [top, bottom] = walls(&root);
     let time = time::read(&root);
     let (origin, grains, bounds) = (origin?, grains?, bounds?);
@@ -133,7 +139,15 @@ fn read(reader: &Reader) -> Option<Scene> {
     let start = origin
         .place(grains, &bounds.domain, bounds.height, seed)
         .map_err(|message| reader.wrong(&["box", "size"], message))
-        .ok();
+        .ok()?;
+    if bounds.height.is_none() && !matches!(origin, Source::State(_)) {
+        let third = [
+            Step::Key("box".into()),
+            Step::Key("size".into()),
+            Step::Item(2),
+        ];
+        reader.choose(&third, units::LENGTH.write(protocol::wall_height(&start)));
+    }
     let mut scene = Scene {
         title: title.unwrap_or_default().into(),
         question: question.map(Into::into),
@@ -142,18 +156,25 @@ fn read(reader: &Reader) -> Option<Scene> {
         domain: bounds.domain,
         top,
         bottom,
-        start: start?,
+        start,
         past,
         step: f64::NAN, // until `settle`
         skin: time.skin,
         phases,
         output,
-        text: reader.document().text.clone(),
+        text: String::new(), // until all is chosen
     };
     time::settle(&mut scene, time.step)
         .map_err(|message| reader.wrong(&["time", "step"], message))
         .ok()?;
     output::check(&scene.output, scene.step, reader);
+    if time.step.is_none() {
+        let step = [Step::Key("time".into()), Step::Key("step".into())];
+        reader.choose(&step, units::TIME.write(scene.step));
+    }
+    if !reader.has_problems() {
+        scene.text = reader.resolved();
+    }
     Some(scene)
 }
 
@@ -175,12 +196,13 @@ fn walls(root: &Table) -> [Surface; 2] {
         ("frictionless", Surface::Frictionless),
         ("full", Surface::Full),
     ];
-    let Some(walls) = root.table("wall", "[wall.top] with surface = \"full\"") else {
+    let example = "[wall.top] with surface = \"full\"";
+    let Some(walls) = root.table_or_empty("wall", example) else {
         return [Surface::default(); 2];
     };
     ["top", "bottom"].map(|key| {
-        let wall = walls.table(key, "[wall.top] with surface = \"full\"");
-        let surface = wall.and_then(|wall| wall.choice("surface", &words));
+        let wall = walls.table_or_empty(key, example);
+        let surface = wall.map(|wall| wall.choice_or("surface", &words, Surface::default()));
         surface.unwrap_or_default()
     })
 }

@@ -15,8 +15,8 @@ pub struct Output {
     pub grains: Option<File>,
     /// `contacts.nc`.
     pub contacts: Option<File>,
-    /// Thickness of the profiles' layers [m]; none: one mean diameter.
-    pub layer: Option<f64>,
+    /// Thickness of the profiles' layers [m].
+    pub layer: f64,
 }
 
 /// One file.
@@ -72,14 +72,12 @@ struct Default {
     variables: Vec<&'static str>,
 }
 
-/// Read `[output]`; `phases` set the default intervals.
-pub fn read(root: &Table, phases: &[Phase]) -> Option<Output> {
+/// Read `[output]`; `phases` set the default intervals, and the mean `diameter` [m] of the
+/// grains that of the profiles' layers.
+pub fn read(root: &Table, phases: &[Phase], diameter: f64) -> Option<Output> {
     let total: f64 = phases.iter().map(expected).sum();
-    let table = root.table("output", "[output] with series = { every = \"1 ms\" }");
-    if root.has("output") && table.is_none() {
-        return None;
-    }
-    let table = table.as_ref();
+    let example = "[output] with series = { every = \"1 ms\" }";
+    let table = &root.table_or_empty("output", example)?;
     let series = Default {
         key: "series",
         example: "series = { every = \"1 ms\" }",
@@ -104,12 +102,15 @@ pub fn read(root: &Table, phases: &[Phase]) -> Option<Output> {
         rows: None,
         variables: names(dem::output::CONTACTS),
     };
-    let (profiles, layer) = file(table, &profiles, total);
+    let mut layer = diameter;
+    let of_profiles = |table: &Table| {
+        layer = table.quantity_or("layer", &LENGTH, Range::Positive, diameter);
+    };
     Some(Output {
-        series: file(table, &series, total).0,
-        profiles,
-        grains: file(table, &grains, total).0,
-        contacts: file(table, &contacts, total).0,
+        series: file(table, &series, total, |_| {}),
+        profiles: file(table, &profiles, total, of_profiles),
+        grains: file(table, &grains, total, |_| {}),
+        contacts: file(table, &contacts, total, |_| {}),
         layer,
     })
 }
@@ -145,27 +146,19 @@ fn expected(phase: &Phase) -> f64 {
     if expected.is_finite() { expected } else { 10.0 }
 }
 
-/// The file and the thickness of its layers, of which only profiles may speak.
-fn file(table: Option<&Table>, default: &Default, total: f64) -> (Option<File>, Option<f64>) {
+/// The file `default.key`; `more` reads what only this one has.
+fn file(outer: &Table, default: &Default, total: f64, more: impl FnOnce(&Table)) -> Option<File> {
     let key = default.key;
-    let stated = table.filter(|table| table.has(key));
-    if stated.is_some_and(|table| table.is_word(key, "none")) {
-        return (None, None);
+    if !outer.has(key) && default.rows.is_none() {
+        outer.choose(key, "none");
     }
-    let Some(outer) = stated else {
-        let file = default.rows.map(|rows| File {
-            every: round(total / rows),
-            variables: default.variables.iter().map(|s| (*s).into()).collect(),
-        });
-        return (file, None);
-    };
-    let Some(table) = outer.table(key, &format!("{}, or \"none\"", default.example)) else {
-        return (None, None);
-    };
-    let every = table.quantity("every", &TIME, Range::Positive);
-    let layer = (key == "profiles")
-        .then(|| table.quantity("layer", &LENGTH, Range::Positive))
-        .flatten();
+    if outer.is_word(key, "none") || !outer.has(key) && default.rows.is_none() {
+        return None;
+    }
+    let table = outer.table_or_empty(key, &format!("{}, or \"none\"", default.example))?;
+    let rows = default.rows.unwrap_or(20.0);
+    let every = table.quantity_or("every", &TIME, Range::Positive, round(total / rows));
+    more(&table);
     let example = format!(
         "variables = {:?}",
         &default.variables[..default.variables.len().min(2)]
@@ -180,13 +173,15 @@ fn file(table: Option<&Table>, default: &Default, total: f64) -> (Option<File>, 
             );
         }
     }
-    let all = || default.variables.iter().map(|s| (*s).into()).collect();
-    let rows = default.rows.unwrap_or(20.0);
-    let file = File {
-        every: every.unwrap_or_else(|| round(total / rows)),
-        variables: variables.map_or_else(all, |names| names.iter().map(|s| (*s).into()).collect()),
-    };
-    (Some(file), layer)
+    let variables = variables.unwrap_or_else(|| {
+        let all = toml_edit::Array::from_iter(default.variables.iter().copied());
+        table.choose("variables", all);
+        default.variables.clone()
+    });
+    Some(File {
+        every,
+        variables: variables.into_iter().map(Into::into).collect(),
+    })
 }
 
 /// The next of 1, 2, 5 times a power of ten below `x`.

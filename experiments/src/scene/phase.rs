@@ -128,17 +128,16 @@ fn name(table: &Table, taken: &[String]) -> Option<String> {
 fn one(table: &Table, name: String, context: &Context) -> Option<Phase> {
     let top = top(table, context);
     let shear = shear(table);
-    let layer = table.quantity("layer", &LENGTH, Range::Positive);
+    let layer = if table.has("shear") {
+        table.quantity_or("layer", &LENGTH, Range::Positive, context.diameter)
+    } else {
+        table.refuse(&["layer"], "has a meaning only where there is shear");
+        context.diameter
+    };
     let law = law(table, context);
     let gravity = bounds::gravity(table).unwrap_or(context.gravity);
-    let start = start(table);
     let end = end(table, shear);
-    if !table.has("shear") {
-        table.refuse(&["layer"], "has a meaning only where there is shear");
-    }
-    if let Some(layer) = layer
-        && 2.0 * layer >= context.tallest
-    {
+    if table.has("layer") && table.has("shear") && 2.0 * layer >= context.tallest {
         let tallest = context.tallest;
         let what = format!("two layers of {layer} m are thicker than the whole bed");
         table.wrong(
@@ -152,34 +151,35 @@ fn one(table: &Table, name: String, context: &Context) -> Option<Phase> {
         None
     };
     let by_velocity = matches!(shear, Some(Shear::StrainRate(_) | Shear::Velocity(_)));
-    if start == Some(Motion::Profile) && !by_velocity {
-        let what = "is \"profile\", which needs a shear by strain_rate or velocity";
-        table.wrong("start", format!("{what}; write \"rest\" or \"keep\""));
-    }
     let default = if by_velocity {
         Motion::Profile
     } else {
         Motion::Rest
     };
+    let start = start(table, default);
+    if start == Motion::Profile && !by_velocity {
+        let what = "is \"profile\", which needs a shear by strain_rate or velocity";
+        table.wrong("start", format!("{what}; write \"rest\" or \"keep\""));
+    }
     Some(Phase {
         name,
         top: top?,
         shear,
-        layer: layer.unwrap_or(context.diameter),
+        layer,
         law,
         gravity,
-        start: start.unwrap_or(default),
+        start,
         end: end?,
     })
 }
 
-fn start(table: &Table) -> Option<Motion> {
+fn start(table: &Table, default: Motion) -> Motion {
     let words = [
         ("rest", Motion::Rest),
         ("keep", Motion::Keep),
         ("profile", Motion::Profile),
     ];
-    table.choice("start", &words)
+    table.choice_or("start", &words, default)
 }
 
 fn law(table: &Table, context: &Context) -> ContactLaw {
@@ -200,7 +200,11 @@ fn law(table: &Table, context: &Context) -> ContactLaw {
 }
 
 fn top(table: &Table, context: &Context) -> Option<WallMotion> {
-    if !table.has("top") || table.is_word("top", "held") {
+    if !table.has("top") {
+        table.choose("top", "held");
+        return Some(WallMotion::Held);
+    }
+    if table.is_word("top", "held") {
         return Some(WallMotion::Held);
     }
     let top = table.table("top", TOP)?;
@@ -236,14 +240,18 @@ fn stress(top: &Table, context: &Context) -> Option<StressLoad> {
     let mean = top.quantity("normal_stress", &STRESS, Range::Positive);
     let amplitude = top.quantity("amplitude", &STRESS, Range::NotNegative);
     let frequency = top.quantity("frequency", &FREQUENCY, Range::Positive);
-    let mass = top.quantity("mass", &MASS, Range::Positive);
-    let damping = top.quantity("damping", &DAMPING, Range::NotNegative);
+    let mass = top.quantity_or("mass", &MASS, Range::Positive, context.mass);
     match top.present(&["amplitude", "frequency"])[..] {
         ["amplitude"] => top.missing("frequency", "frequency = \"1 Hz\""),
         ["frequency"] => top.missing("amplitude", "amplitude = \"10 kPa\""),
         _ => {}
     }
-    let mean = mean?;
+    let Some(mean) = mean else {
+        top.present(&["damping"]);
+        return None;
+    };
+    let damping = default_damping(mean, context);
+    let damping = top.quantity_or("damping", &DAMPING, Range::NotNegative, damping);
     let amplitude = amplitude.unwrap_or(0.0);
     if amplitude >= mean {
         let what = "is not below normal_stress: the wall would leave the grains";
@@ -254,8 +262,8 @@ fn stress(top: &Table, context: &Context) -> Option<StressLoad> {
         amplitude,
         frequency: frequency.unwrap_or(0.0),
         area: context.area,
-        mass: mass.unwrap_or(context.mass),
-        damping: damping.unwrap_or_else(|| default_damping(mean, context)),
+        mass,
+        damping,
     })
 }
 

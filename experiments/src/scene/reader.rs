@@ -1,17 +1,20 @@
 //! Reads tables key by key. Every problem is noted and reading goes on, so that a file's
 //! problems are told all at once.
 
+use super::choices::{self, Choice};
 use super::document::Document;
 use super::problem::{Problem, Problems};
 use super::tree::{Node, Step, Value};
 use super::units::Kind;
 use std::cell::RefCell;
 
-/// A document being read, and what is wrong with it so far.
+/// A document being read, what is wrong with it so far, and what was chosen where it says
+/// nothing.
 #[derive(Debug)]
 pub struct Reader<'a> {
     document: &'a Document,
     problems: RefCell<Vec<Problem>>,
+    choices: RefCell<Vec<Choice>>,
 }
 
 /// Which numbers are possible.
@@ -53,6 +56,7 @@ impl<'a> Reader<'a> {
         Self {
             document,
             problems: RefCell::default(),
+            choices: RefCell::default(),
         }
     }
 
@@ -64,6 +68,17 @@ impl<'a> Reader<'a> {
     /// The document.
     pub fn document(&self) -> &'a Document {
         self.document
+    }
+
+    /// The text with all that was chosen in it; only for a document without problems.
+    pub fn resolved(&self) -> String {
+        choices::resolve(&self.document.text, &self.choices.borrow())
+    }
+
+    /// Note `value` as what the resolved text says at `path`.
+    pub fn choose(&self, path: &[Step], value: impl Into<toml_edit::Value>) {
+        let (path, value) = (path.to_vec(), Some(value.into()));
+        self.choices.borrow_mut().push(Choice { path, value });
     }
 
     /// Has anything been wrong so far?
@@ -138,8 +153,7 @@ impl<'a> Table<'a> {
 
     /// Note a problem with `key`.
     pub fn wrong(&self, key: &str, message: String) {
-        let path = [&self.path[..], &[Step::Key(key.into())]].concat();
-        self.reader.note(&path, message);
+        self.reader.note(&self.path_of(key), message);
     }
 
     /// Note a problem with this table as a whole.
@@ -250,6 +264,32 @@ impl<'a> Table<'a> {
         each.collect::<Vec<_>>().into_iter().collect()
     }
 
+    /// Quantity of `key` in SI units, or `default` [SI], which is then chosen.
+    pub fn quantity_or(&self, key: &'static str, kind: &Kind, range: Range, default: f64) -> f64 {
+        if !self.has(key) {
+            self.choose(key, kind.write(default));
+        }
+        self.quantity(key, kind, range).unwrap_or(default)
+    }
+
+    /// Note `value` as what the resolved text says at `key`, which is silent or is replaced.
+    pub fn choose(&self, key: &'static str, value: impl Into<toml_edit::Value>) {
+        self.reader.choose(&self.path_of(key), value);
+    }
+
+    /// Note that the resolved text does without `key`.
+    pub fn leave_out(&self, key: &'static str) {
+        let (path, value) = (self.path_of(key), None);
+        self.reader
+            .choices
+            .borrow_mut()
+            .push(Choice { path, value });
+    }
+
+    fn path_of(&self, key: &str) -> Vec<Step> {
+        [&self.path[..], &[Step::Key(key.into())]].concat()
+    }
+
     /// Plain number of `key`; `example` is one that fits.
     pub fn number(&self, key: &'static str, range: Range, example: &str) -> Option<f64> {
         let read = match &self.node(key)?.value {
@@ -307,6 +347,36 @@ impl<'a> Table<'a> {
         let found = node.value.describe();
         self.wrong(key, format!("is {found}; write {key} = {all}"));
         None
+    }
+
+    /// One of `words`, or `default`, which is then chosen.
+    pub fn choice_or<T: Copy + PartialEq>(
+        &self,
+        key: &'static str,
+        words: &[(&str, T)],
+        default: T,
+    ) -> T {
+        if !self.has(key) {
+            let (word, _) = words
+                .iter()
+                .find(|(_, meaning)| *meaning == default)
+                .expect("a default has a word");
+            self.choose(key, *word);
+        }
+        self.choice(key, words).unwrap_or(default)
+    }
+
+    /// The table of `key`, or an empty one where there is none: what is chosen in it makes it.
+    pub fn table_or_empty(&self, key: &'static str, example: &str) -> Option<Self> {
+        if self.has(key) {
+            return self.table(key, example);
+        }
+        Some(Self {
+            reader: self.reader,
+            path: self.path_of(key),
+            entries: &[],
+            known: RefCell::default(),
+        })
     }
 
     /// The table of `key`; `example` is a whole entry.

@@ -18,11 +18,21 @@ pub struct Time {
 /// Read `[time]` and `[search]`.
 pub fn read(root: &Table) -> Time {
     let time = root.table("time", "[time] with step = \"1 us\"");
-    let search = root.table("search", "[search] with skin = \"1 mm\"");
+    let search = root.table_or_empty("search", "[search] with skin = \"1 mm\"");
     Time {
         step: time.and_then(|table| table.quantity("step", &TIME, Range::Positive)),
-        skin: search.and_then(|table| table.quantity("skin", &LENGTH, Range::Positive)),
+        skin: search.and_then(|table| skin(&table)),
     }
+}
+
+fn skin(search: &Table) -> Option<f64> {
+    if !search.has("skin") {
+        search.choose("skin", "auto");
+    }
+    if search.is_word("skin", "auto") {
+        return None;
+    }
+    search.quantity("skin", &LENGTH, Range::Positive)
 }
 
 /// Set the step of `scene`: as `stated`, if that is stable in every phase, or the default.
@@ -55,8 +65,6 @@ pub fn settle(scene: &mut Scene, stated: Option<f64>) -> Result<(), String> {
         }
         None => {
             scene.step = default;
-            // Seventeen digits give the same bits when the text is read again.
-            scene.text += &format!("\n# chosen: time.step = \"{default:e} s\"\n");
             Ok(())
         }
     }

@@ -84,6 +84,13 @@ impl Kind {
         Ok(value)
     }
 
+    /// The text of `value` [SI]; reading it gives the same bits.
+    pub fn write(&self, value: f64) -> String {
+        let number = format!("{value:?}");
+        let number = number.strip_suffix(".0").unwrap_or(&number);
+        format!("{number} {}", self.unit)
+    }
+
     fn dimension(&self) -> Dimension {
         let unit = Quantity::parse(self.unit).expect("a test reads every unit of this file");
         unit.dimension()
@@ -177,6 +184,16 @@ mod tests {
         for (kind, text, value) in table {
             let read = kind.read(text).unwrap();
             assert!((read / value - 1.0).abs() < 1e-15, "{text} gave {read:e}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_with_the_same_bits() {
+        for kind in KINDS {
+            for value in [0.0, 1.0, 0.1 + 0.2, -1e-7 / 3.0, 1e17 / 7.0, 123456.789] {
+                let text = kind.write(value);
+                assert_eq!(kind.read(&text), Ok(value), "{text}");
+            }
         }
     }
 
