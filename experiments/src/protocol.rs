@@ -115,6 +115,18 @@ pub fn bed_height(state: &State) -> f64 {
     wall_height(state).min(highest(&state.grains) - state.walls[BOTTOM].offset)
 }
 
+/// Height that the bed will have once it carries a load [m], as far as it can be guessed: that of
+/// a state as it is, that of other grains at a solid fraction of 0.6.
+pub fn expected_height(scene: &Scene) -> f64 {
+    let start = &scene.start;
+    if !start.contacts.is_empty() {
+        return bed_height(start);
+    }
+    let grains = &start.grains;
+    let volume: f64 = (0..grains.len()).map(|k| grains.volume(k)).sum();
+    volume / (0.6 * scene.domain.area())
+}
+
 /// Way of the driven layer along x [m], the mean of its grains; zero without one.
 pub fn driven_way(state: &State) -> f64 {
     let grains = &state.grains;
@@ -185,9 +197,8 @@ fn choose_layers(phase: &Phase, state: &mut State, height: f64) -> Result<()> {
     }
     ensure!(
         2.0 * phase.layer < height,
-        "phase {}: the bed is {height:.4} m high, and the held and the driven layer of {} m each \
-         leave nothing between them; write a smaller layer, or use more grains",
-        phase.name,
+        "the bed is {height:.4} m high, and the held and the driven layer of {} m each leave \
+         nothing between them; write a smaller layer, or use more grains",
         phase.layer
     );
     for (constraint, position) in grains.constraint.iter_mut().zip(&grains.position) {
@@ -207,8 +218,7 @@ fn choose_layers(phase: &Phase, state: &mut State, height: f64) -> Result<()> {
     for (horizontal, name) in [(Horizontal::Held, "held"), (Horizontal::Driven, "driven")] {
         ensure!(
             grains.constraint.iter().any(is(horizontal)),
-            "phase {}: no grain has its centre in the {name} layer of {} m; write a thicker layer",
-            phase.name,
+            "no grain has its centre in the {name} layer of {} m; write a thicker layer",
             phase.layer
         );
     }

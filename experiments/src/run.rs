@@ -12,6 +12,7 @@ pub use summary::{Outcome, PhaseSummary, Summary};
 use crate::output::state::Saved;
 use crate::output::{self, Header, Plan, Writer};
 use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
+use crate::scene::layers::LOOSEST;
 use crate::scene::{Phase, Scene};
 use anyhow::{Context, Result, bail, ensure};
 use bed::Bed;
@@ -139,7 +140,8 @@ fn check_start(scene: &Scene, threads: usize) -> Result<()> {
     let phase = &scene.phases[0];
     let reference = scene.past.reference_of(phase);
     let Prepared { model, state, .. } =
-        protocol::prepare(scene, phase, scene.start.clone(), reference)?;
+        protocol::prepare(scene, phase, scene.start.clone(), reference)
+            .with_context(|| format!("phase {}", phase.name))?;
     let solver = Solver::new(model, state, threads);
     solver.with_context(|| format!("phase {}", phase.name))?;
     Ok(())
@@ -191,17 +193,13 @@ fn plan(scene: &Scene) -> Result<Plan> {
 /// Layers of a profile; more tell nothing about grains, and fill the disk.
 const MOST_LAYERS: usize = 100_000;
 
-/// Solid fraction of the loosest bed that carries a load: spheres at high friction jam at
-/// 0.55.
-const LOOSEST: f64 = 0.5;
-
 fn solid_volume(grains: &dem::Grains) -> f64 {
     (0..grains.len()).map(|k| grains.volume(k)).sum()
 }
 
 /// Number of steps of `phase` at most, where the height of its bed can only be guessed.
 pub fn expected_steps(scene: &Scene, phase: &Phase) -> u64 {
-    let guess = solid_volume(&scene.start.grains) / (0.6 * scene.domain.area());
+    let guess = protocol::expected_height(scene);
     let model = protocol::model(scene, phase, guess);
     longest(phase, &model, guess)
 }
@@ -238,7 +236,7 @@ impl Run<'_> {
             model,
             state,
             height,
-        } = protocol::prepare(self.scene, phase, state, goes_on)?;
+        } = protocol::prepare(self.scene, phase, state, goes_on).with_context(in_phase)?;
         let reference = goes_on.unwrap_or_else(|| Reference {
             time: state.time,
             height,

@@ -143,3 +143,18 @@ fn the_ledger_is_kept_for_every_variable_that_needs_it() {
         assert_eq!(value(&model) && !ever, kept, "{name}");
     }
 }
+
+#[test]
+fn layers_that_may_not_fit_are_warned_of() {
+    let warnings = |sets: &[&str]| read(SMALL, sets).unwrap().warnings();
+    assert_eq!(warnings(&["grains.count=240"]), [] as [&str; 0]);
+    // The bed will be 1.45 mm high, at most 2.7 mm.
+    let thick = warnings(&["phase.shear.layer=0.8 mm"]).concat();
+    let expected = "0.0008 m each take 110 % of the bed, which will be about 0.0015 m high";
+    assert!(
+        thick.starts_with("phase shear: ") && thick.contains(expected),
+        "{thick}"
+    );
+    let thin = warnings(&["grains.count=240", "phase.shear.layer=0.46 mm"]).concat();
+    assert!(thin.contains("the largest radius is 5.0000e-4 m"), "{thin}");
+}

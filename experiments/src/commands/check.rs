@@ -40,6 +40,9 @@ pub fn check(arguments: &Check) -> Result<ExitCode> {
     println!();
     cost(&scene, arguments.threads.map_or(0, usize::from))?;
     left_out(&scene);
+    for warning in scene.warnings() {
+        line("warning", &warning);
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -53,7 +56,7 @@ struct Facts {
     mass: f64,
     /// Density [kg/m³].
     density: f64,
-    /// Height of the bed at a solid fraction of 0.6 [m].
+    /// Height that the bed is expected to have once it is loaded [m].
     height: f64,
 }
 
@@ -68,7 +71,7 @@ impl Facts {
             diameter: 2.0 * grains.mean_radius(),
             mass: mass / count as f64,
             density: mass / volume,
-            height: volume / (0.6 * scene.domain.area()),
+            height: protocol::expected_height(scene),
         }
     }
 }
@@ -101,9 +104,13 @@ fn bed(scene: &Scene, facts: &Facts) {
     line(
         "bed when settled",
         &format!(
-            "about {:.4} m high, {:.1} diameters (at solid fraction 0.6)",
+            "about {:.4} m high, {:.1} diameters ({})",
             facts.height,
-            diameters(facts.height)
+            diameters(facts.height),
+            match scene.start.contacts.is_empty() {
+                true => "at solid fraction 0.6",
+                false => "as the state has it",
+            }
         ),
     );
 }
@@ -199,16 +206,11 @@ fn describe(scene: &Scene, phase: &Phase, facts: &Facts) {
     }
     if phase.shear.is_some() {
         let share = 2.0 * phase.layer / facts.height;
-        let note = if share > 0.5 {
-            ": too thin a bed to shear; use more grains"
-        } else {
-            ""
-        };
         let thickness = phase.layer;
         line(
             "  layers",
             &format!(
-                "{thickness:.4} m each, held and driven, {:.0} % of the bed{note}",
+                "{thickness:.4} m each, held and driven, {:.0} % of the bed",
                 100.0 * share
             ),
         );

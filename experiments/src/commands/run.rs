@@ -46,6 +46,9 @@ pub fn run(arguments: &Run) -> Result<ExitCode> {
         force: arguments.force,
         quiet: arguments.quiet,
     };
+    for warning in scene.warnings().iter().filter(|_| !options.quiet) {
+        eprintln!("warning: {warning}");
+    }
     let stop = Arc::new(AtomicBool::new(false));
     let asked = stop.clone();
     let on_signal = move || {

@@ -10,6 +10,7 @@ pub mod choices;
 pub mod contact;
 pub mod document;
 pub mod grains;
+pub mod layers;
 pub mod output;
 pub mod phase;
 pub mod problem;
@@ -27,6 +28,7 @@ use crate::protocol::{self, Past};
 use crate::start::Source;
 use dem::contact::{Linear, Tension};
 use dem::{ContactLaw, Domain, State, Surface};
+use layers::Room;
 use reader::{Reader, Table};
 use tree::Step;
 
@@ -116,11 +118,15 @@ fn read(reader: &Reader) -> Option<Scene> {
         .map_or(1.0, |g| (0..g.len()).map(|k| g.volume(k)).sum());
     let diameter = grains.as_ref().map_or(1.0, largest_diameter);
     let law = contact::read(&root, mass / count);
+    let loose = matches!(origin, Some(Source::Loose { .. }));
     let area = bounds.map_or(1.0, |b| b.domain.area());
     let context = phase::Context {
         area,
         mass,
-        tallest: volume / (crate::start::LOOSE_FRACTION * area),
+        room: match (&grains, bounds) {
+            (Some(grains), Some(_)) => Room::of(grains, area, loose),
+            _ => Room::ENDLESS,
+        },
         density: mass / volume,
         diameter,
         law: law.unwrap_or(HARMLESS),
@@ -168,6 +174,19 @@ fn read(reader: &Reader) -> Option<Scene> {
         .map_err(|message| reader.wrong(&["time", "step"], message))
         .ok()?;
     output::check(&scene.output, scene.step, reader);
+    // The first bed is there already.
+    let first = &scene.phases[0];
+    let reference = scene.past.reference_of(first);
+    if !reader.has_problems()
+        && let Err(error) = protocol::prepare(&scene, first, scene.start.clone(), reference)
+    {
+        let layer = [
+            Step::Key("phase".into()),
+            Step::Item(0),
+            Step::Key("layer".into()),
+        ];
+        reader.note(&layer, error.to_string());
+    }
     if time.step.is_none() {
         let step = [Step::Key("time".into()), Step::Key("step".into())];
         reader.choose(&step, units::TIME.write(scene.step));

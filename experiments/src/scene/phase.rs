@@ -2,6 +2,7 @@
 
 use super::bounds;
 use super::contact::{friction, with_friction};
+use super::layers::Room;
 use super::reader::{Range, Table};
 use super::units::{DAMPING, FREQUENCY, LENGTH, MASS, RATE, STRESS, TIME, VELOCITY};
 use dem::{ContactLaw, StressLoad, WallMotion};
@@ -73,8 +74,8 @@ pub struct Context {
     pub density: f64,
     /// Largest diameter [m].
     pub diameter: f64,
-    /// Height of the grains while they are still loose [m].
-    pub tallest: f64,
+    /// Room for layers.
+    pub room: Room,
     /// The scene's contact law.
     pub law: ContactLaw,
     /// The scene's gravity [m/s²].
@@ -95,10 +96,14 @@ pub fn read(root: &Table, context: &Context) -> Vec<Phase> {
     let tables = root.tables("phase", PHASE);
     let mut names: Vec<String> = Vec::new();
     let mut phases = Vec::new();
+    let mut settled = false;
     for table in &tables {
         let name = name(table, &names);
         names.extend(name.clone());
-        phases.extend(one(table, name.unwrap_or_default(), context));
+        let phase = one(table, name.unwrap_or_default(), context, settled);
+        // What could not be read may have settled the bed or not.
+        settled |= phase.as_ref().is_some_and(settles);
+        phases.extend(phase);
     }
     if tables.is_empty() && root.is_list("phase") {
         root.wrong("phase", format!("is empty; write e.g. {PHASE}"));
@@ -125,7 +130,12 @@ fn name(table: &Table, taken: &[String]) -> Option<String> {
     Some(name.to_string())
 }
 
-fn one(table: &Table, name: String, context: &Context) -> Option<Phase> {
+/// Does a bed lie or stand under a load at the end of `phase`?
+fn settles(phase: &Phase) -> bool {
+    phase.gravity.z != 0.0 || matches!(phase.top, WallMotion::Stress(_))
+}
+
+fn one(table: &Table, name: String, context: &Context, settled: bool) -> Option<Phase> {
     let top = top(table, context);
     let shear = shear(table);
     let layer = if table.has("shear") {
@@ -137,13 +147,10 @@ fn one(table: &Table, name: String, context: &Context) -> Option<Phase> {
     let law = law(table, context);
     let gravity = bounds::gravity(table).unwrap_or(context.gravity);
     let end = end(table, shear);
-    if table.has("layer") && table.has("shear") && 2.0 * layer >= context.tallest {
-        let tallest = context.tallest;
-        let what = format!("two layers of {layer} m are thicker than the whole bed");
-        table.wrong(
-            "layer",
-            format!("{what}; write far less than {tallest:.4} m"),
-        );
+    if table.has("shear")
+        && let Some(why) = context.room.refuses(layer, settled)
+    {
+        table.wrong("layer", why);
     }
     let shear = if table.has("shear") {
         Some(shear?)

@@ -99,7 +99,8 @@ impl<'a> Reader<'a> {
         self.note(&steps, message);
     }
 
-    fn note(&self, path: &[Step], message: String) {
+    /// The same, through lists too.
+    pub fn note(&self, path: &[Step], message: String) {
         let problem = self.document.problem(path, message);
         self.problems.borrow_mut().push(problem);
     }
