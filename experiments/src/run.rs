@@ -13,7 +13,7 @@ use crate::output::state::Saved;
 use crate::output::{self, Header, Plan, Writer};
 use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
 use crate::scene::layers::LOOSEST;
-use crate::scene::{Phase, Scene};
+use crate::scene::{self, Phase, Scene};
 use anyhow::{Context, Result, bail, ensure};
 use bed::Bed;
 use dem::{Drive, Model, Solver, State, Sums};
@@ -39,15 +39,6 @@ pub struct Options {
     pub quiet: bool,
 }
 
-/// Files that a run leaves.
-pub const FILES: [&str; 5] = [
-    "series.nc",
-    "profiles.nc",
-    "grains.nc",
-    "contacts.nc",
-    STATE,
-];
-
 /// The file to go on from.
 pub const STATE: &str = "state.h5";
 
@@ -61,7 +52,8 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
     check_room(&options.out, options.force)?;
     check_start(scene, options.threads)?;
     let plan = plan(scene)?;
-    make_room(&options.out)?;
+    let out = &options.out;
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
     let header = Header {
         title: scene.title.clone(),
         scene: scene.text.clone(),
@@ -72,7 +64,8 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
         .iter()
         .map(|phase| phase.name.clone())
         .collect();
-    let writer = Writer::create(&options.out, &header, &plan, &names, &scene.start.grains)?;
+    let writer = Writer::create(out, &header, &plan, &names, &scene.start.grains)?;
+    remove_others(out, &scene.output)?;
     let steps = scene
         .phases
         .iter()
@@ -125,7 +118,10 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
 
 /// See that the folder holds no result.
 fn check_room(out: &Path, force: bool) -> Result<()> {
-    let mut paths = FILES.iter().map(|name| out.join(name));
+    let mut paths = output::NAMES
+        .into_iter()
+        .chain([STATE])
+        .map(|name| out.join(name));
     if let (Some(first), false) = (paths.find(|path| path.exists()), force) {
         bail!(
             "{} exists; choose another folder with --out, or replace it with --force",
@@ -135,7 +131,7 @@ fn check_room(out: &Path, force: bool) -> Result<()> {
     Ok(())
 }
 
-/// See that the first phase can begin: what is refused later has cost the old results.
+/// See that the first phase can begin: what is refused here costs no old results.
 fn check_start(scene: &Scene, threads: usize) -> Result<()> {
     let phase = &scene.phases[0];
     let reference = scene.past.reference_of(phase);
@@ -147,12 +143,20 @@ fn check_start(scene: &Scene, threads: usize) -> Result<()> {
     Ok(())
 }
 
-/// Make the folder, and remove old results from it. An old state stays until the new one
-/// replaces it: this run may have started from it.
-fn make_room(out: &Path) -> Result<()> {
-    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
-    let old = FILES.iter().filter(|&&name| name != STATE);
-    for path in old.map(|name| out.join(name)).filter(|p| p.exists()) {
+/// Remove old results that this run does not replace, so that no folder holds two runs. An old
+/// state stays until the new one replaces it: this run may have started from it.
+fn remove_others(out: &Path, output: &scene::Output) -> Result<()> {
+    let files = [
+        &output.series,
+        &output.profiles,
+        &output.grains,
+        &output.contacts,
+    ];
+    let others = output::NAMES.iter().zip(files).filter(|(_, f)| f.is_none());
+    for path in others
+        .map(|(name, _)| out.join(name))
+        .filter(|p| p.exists())
+    {
         let removed = std::fs::remove_file(&path);
         removed.with_context(|| format!("cannot remove {}", path.display()))?;
     }
@@ -163,9 +167,8 @@ fn make_room(out: &Path) -> Result<()> {
 /// bed as it will be when settled.
 fn plan(scene: &Scene) -> Result<Plan> {
     let grains = &scene.start.grains;
-    let names = |file: &Option<crate::scene::output::File>| {
-        file.as_ref().map(|file| file.variables.clone())
-    };
+    let names =
+        |file: &Option<scene::output::File>| file.as_ref().map(|file| file.variables.clone());
     let layer = scene.output.layer;
     let settled = solid_volume(grains) / (LOOSEST * scene.domain.area());
     // A bed that comes settled from a file may be higher than its own volume says.

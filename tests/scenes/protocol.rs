@@ -227,16 +227,35 @@ fn a_run_that_is_refused_leaves_old_results() {
     };
     let never = AtomicBool::new(false);
     scene.phases[0].layer = bed_height(&scene.start);
-    let before = std::fs::read(folder.path().join("series.nc")).unwrap();
+    let all = || {
+        let entries = std::fs::read_dir(folder.path()).unwrap();
+        let paths = entries.map(|entry| entry.unwrap().path());
+        let files = paths.filter(|path| path.is_file());
+        let bytes = files.map(|path| (path.clone(), std::fs::read(path).unwrap()));
+        bytes.collect::<std::collections::BTreeMap<_, _>>()
+    };
+    let before = all();
+    assert_eq!(before.len(), 4, "series, profiles, grains and state");
     assert!(run(&scene, &options, &never).is_err());
-    let after = std::fs::read(folder.path().join("series.nc")).unwrap();
-    assert!(before == after && path.is_file());
+    assert!(before == all(), "a layer without room");
 
-    // One that fails later leaves the state that it began with.
+    // Some of the files can be made, not all.
     let mut scene = read(&text, &[]).unwrap();
-    scene.output.series.as_mut().unwrap().variables = vec!["vorticity".into()];
+    scene.output.grains.as_mut().unwrap().variables = vec!["vorticity".into()];
     assert!(run(&scene, &options, &never).is_err());
-    assert!(state::load(&path).is_ok());
+    assert!(before == all(), "an unknown variable");
+    let scene = read(&text, &["output.contacts.every=1 ms"]).unwrap();
+    std::fs::create_dir(folder.path().join("contacts.nc")).unwrap();
+    assert!(run(&scene, &options, &never).is_err());
+    assert!(before == all(), "a name that is taken");
+
+    // A run that is not refused replaces all.
+    let scene = read(&text, &["output.grains=none"]).unwrap();
+    std::fs::remove_dir(folder.path().join("contacts.nc")).unwrap();
+    run(&scene, &options, &never).unwrap();
+    let after = all();
+    assert_eq!(after.len(), 3, "grains.nc is of the run before");
+    assert!(after.iter().all(|(path, bytes)| before[path] != *bytes));
 }
 
 #[test]

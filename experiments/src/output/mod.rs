@@ -14,7 +14,7 @@ mod writer;
 pub use writer::Writer;
 
 use anyhow::{Context, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What is said about a run in the attributes of each of its files; the writer adds
@@ -72,6 +72,14 @@ pub struct Frame {
     pub contacts: bool,
 }
 
+/// Names of the files that a [`Writer`] may make.
+pub const NAMES: [&str; 4] = [
+    series::SeriesFile::NAME,
+    profiles::ProfilesFile::NAME,
+    grains::GrainsFile::NAME,
+    contacts::ContactsFile::NAME,
+];
+
 /// One file of a run.
 trait OutputFile: Send {
     /// Its name in the folder.
@@ -82,7 +90,14 @@ trait OutputFile: Send {
     fn write(&mut self, frame: &Frame) -> Result<()>;
 }
 
-/// Make the files of `plan` in the folder `dir`.
+/// Where a file stands until it is whole and may take the place of an older one.
+fn partial(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".partial");
+    name.into()
+}
+
+/// Make the files of `plan` in the folder `dir`, as [`partial`] ones.
 fn create_files(
     dir: &Path,
     header: &Header,
@@ -94,7 +109,7 @@ fn create_files(
 
     let chosen = catalogue::Chosen::new(plan)?;
     let rows = |name| {
-        let path = dir.join(name);
+        let path = partial(&dir.join(name));
         move |chunk| rows::Rows::create(&path, header, phases, chunk)
     };
     let cannot = |name| format!("cannot make {}", dir.join(name).display());

@@ -6,7 +6,7 @@
 //! Attributes tell the scene, version, commit, seed and machine. Only what is needed to go on
 //! is needed to read the file; no compression, since the low bits of a state are noise.
 
-use super::{Header, provenance};
+use super::{Header, partial, provenance};
 use crate::protocol::{Past, Reference, Unfinished};
 use anyhow::{Context, Result, bail, ensure};
 use dem::{Body, Constraint, Contact, Domain, Grains, History, Horizontal, State, WallState};
@@ -36,12 +36,7 @@ pub struct Saved {
 /// # Errors
 /// A file that cannot be written.
 pub fn save(path: &Path, saved: &Saved, header: &Header) -> Result<()> {
-    let mut name = path
-        .file_name()
-        .context("a state needs a file name")?
-        .to_owned();
-    name.push(".partial");
-    let partial = path.with_file_name(name);
+    let partial = partial(path);
     write(&partial, saved, header)
         .and_then(|()| {
             fs::File::open(&partial)?.sync_all()?;

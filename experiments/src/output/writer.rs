@@ -1,8 +1,8 @@
 //! A thread that writes, so that stepping does not wait for the disk.
 
 use super::netcdf::keep_quiet;
-use super::{Frame, Header, OutputFile, Plan, create_files};
-use anyhow::{Context, Result, anyhow};
+use super::{Frame, Header, NAMES, OutputFile, Plan, create_files, partial};
+use anyhow::{Context, Result, anyhow, ensure};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -19,7 +19,8 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Make the files of `plan` in the folder `dir`; files of these names are replaced.
+    /// Make the files of `plan` in the folder `dir`; files of these names are replaced, but only
+    /// once all new ones are there.
     ///
     /// `phases`: names of the protocol's phases. `grains`: the bed; what never changes
     /// (radius, identity) is taken from it. Unknown names in the plan are refused.
@@ -30,7 +31,9 @@ impl Writer {
         phases: &[String],
         grains: &dem::Grains,
     ) -> Result<Self> {
-        let files = create_files(dir, header, plan, phases, grains)?;
+        let files = create_files(dir, header, plan, phases, grains)
+            .and_then(|files| take_places(dir, &files).map(|()| files))
+            .inspect_err(|_| remove_partial(dir))?;
         let (frames, waiting) = sync_channel(WAITING);
         let dir = dir.to_path_buf();
         let thread = thread::Builder::new()
@@ -77,6 +80,27 @@ impl Drop for Writer {
     fn drop(&mut self) {
         self.frames = None;
         let _ = self.join();
+    }
+}
+
+/// Let the new files take the places of old ones.
+fn take_places(dir: &Path, files: &[Box<dyn OutputFile>]) -> Result<()> {
+    let paths = || files.iter().map(|file| dir.join(file.name()));
+    for path in paths() {
+        ensure!(!path.is_dir(), "{} is a folder; move it", path.display());
+    }
+    for path in paths() {
+        std::fs::rename(partial(&path), &path)
+            .with_context(|| format!("cannot replace {}", path.display()))?;
+    }
+    Ok(())
+}
+
+/// Take away what was made of files that could not all be made.
+fn remove_partial(dir: &Path) {
+    for name in NAMES {
+        // It may not have come to this one.
+        let _ = std::fs::remove_file(partial(&dir.join(name)));
     }
 }
 
