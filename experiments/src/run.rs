@@ -12,9 +12,8 @@ pub use summary::{Outcome, PhaseSummary, Summary};
 use crate::output::state::Saved;
 use crate::output::{self, Header, Plan, Writer};
 use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
-use crate::scene::layers::LOOSEST;
 use crate::scene::{self, Phase, Scene};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Error, Result, bail, ensure};
 use bed::Bed;
 use dem::{Drive, Model, Solver, State, Sums};
 use intervals::{Due, Intervals};
@@ -163,38 +162,18 @@ fn remove_others(out: &Path, output: &scene::Output) -> Result<()> {
     Ok(())
 }
 
-/// Which variables, and the layers of the profiles: from the bottom to a little above the
-/// bed as it will be when settled.
+/// Which variables, and the layers of the profiles.
 fn plan(scene: &Scene) -> Result<Plan> {
-    let grains = &scene.start.grains;
     let names =
         |file: &Option<scene::output::File>| file.as_ref().map(|file| file.variables.clone());
-    let layer = scene.output.layer;
-    let settled = solid_volume(grains) / (LOOSEST * scene.domain.area());
-    // A bed that comes settled from a file may be higher than its own volume says.
-    let height = if scene.start.contacts.is_empty() {
-        settled
-    } else {
-        protocol::bed_height(&scene.start).max(settled)
-    };
-    let count = (height / layer).ceil().max(1.0) as usize;
-    ensure!(
-        count <= MOST_LAYERS,
-        "output.profiles.layer: {layer} m cuts the bed into {count} layers, more than \
-         {MOST_LAYERS}; write e.g. one diameter, {:.1e} m",
-        2.0 * grains.mean_radius()
-    );
     Ok(Plan {
         series: names(&scene.output.series),
         profiles: names(&scene.output.profiles),
         grains: names(&scene.output.grains),
         contacts: names(&scene.output.contacts),
-        profile_edges: (0..=count).map(|k| k as f64 * layer).collect(),
+        profile_edges: scene.profile_edges().map_err(Error::msg)?,
     })
 }
-
-/// Layers of a profile; more tell nothing about grains, and fill the disk.
-const MOST_LAYERS: usize = 100_000;
 
 fn solid_volume(grains: &dem::Grains) -> f64 {
     (0..grains.len()).map(|k| grains.volume(k)).sum()

@@ -158,3 +158,13 @@ fn layers_that_may_not_fit_are_warned_of() {
     let thin = warnings(&["grains.count=240", "phase.shear.layer=0.46 mm"]).concat();
     assert!(thin.contains("the largest radius is 5.0000e-4 m"), "{thin}");
 }
+
+#[test]
+fn intervals_that_nobody_stated_are_never_shorter_than_a_step() {
+    let end = "end={ duration = \"10 us\" }";
+    let ends = ["settle", "consolidate", "shear"].map(|phase| format!("phase.{phase}.{end}"));
+    let ends = ends.each_ref().map(String::as_str);
+    let scene = read(SMALL, &ends).unwrap();
+    assert_eq!(scene.output.series.unwrap().every, scene.step);
+    assert!(scene.output.grains.unwrap().every > scene.step);
+}

@@ -8,6 +8,12 @@ use std::path::Path;
 const GRAINS: &str = "[grains] with count = 1000, radius = \"10 mm\", density = \"2600 kg/m^3\"";
 const RADIUS: &str = "radius = { law = \"uniform\", min = \"9 mm\", max = \"11 mm\" }";
 
+/// Radii from those of clay to those of boulders, and far beyond both [m].
+const SIZES: Range = Range::Within(1e-8, 1e2);
+/// Densities from that of foam to some thousand times that of rock [kg/m³]: slow runs may scale
+/// it for longer steps.
+const DENSITIES: Range = Range::Within(10.0, 1e7);
+
 /// Read `[grains]` and the file that it names.
 pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
     root.missing("grains", GRAINS);
@@ -67,7 +73,7 @@ fn say_where(table: &Table, key: &'static str, path: &Path) {
 
 fn density(table: &Table) -> Option<f64> {
     table.missing("density", "density = \"2600 kg/m^3\"");
-    table.quantity("density", &DENSITY, Range::Positive)
+    table.quantity("density", &DENSITY, DENSITIES)
 }
 
 /// Beyond what memory holds anywhere, and below the 134 million rows that the neighbour
@@ -119,7 +125,7 @@ enum Law {
 fn radius(table: &Table) -> Option<RadiusLaw> {
     table.missing("radius", RADIUS);
     if !table.is_table("radius") {
-        let radius = table.quantity("radius", &LENGTH, Range::Positive);
+        let radius = table.quantity("radius", &LENGTH, SIZES);
         return radius.map(RadiusLaw::Single);
     }
     let table = table.table("radius", RADIUS)?;
@@ -149,7 +155,7 @@ fn radius(table: &Table) -> Option<RadiusLaw> {
     };
     let length = |key, example: &str| {
         table.missing(key, example);
-        table.quantity(key, &LENGTH, Range::Positive)
+        table.quantity(key, &LENGTH, SIZES)
     };
     match law {
         Law::Single => length("value", "value = \"10 mm\"").map(RadiusLaw::Single),
@@ -174,7 +180,7 @@ fn radius(table: &Table) -> Option<RadiusLaw> {
             // Two standard deviations hold 95 % of the grains.
             let bound = |key, sign: f64| {
                 let default = median * (sign * 2.0 * spread).exp();
-                table.quantity_or(key, &LENGTH, Range::Positive, default)
+                table.quantity_or(key, &LENGTH, SIZES, default)
             };
             let (min, max) = (bound("min", -1.0), bound("max", 1.0));
             // About 0.4 ln(max / min) / spread of the draws fall between the two.
@@ -197,7 +203,7 @@ fn radius(table: &Table) -> Option<RadiusLaw> {
         }
         Law::Listed => {
             table.missing("values", "values = [\"5 mm\", \"10 mm\"]");
-            let values = table.quantities("values", &LENGTH, Range::Positive);
+            let values = table.quantities("values", &LENGTH, SIZES);
             let example = "shares = [0.7, 0.3], the shares of the number of grains";
             let shares = table.numbers("shares", Range::NotNegative, example);
             let values = values?;

@@ -13,6 +13,7 @@ pub mod grains;
 pub mod layers;
 pub mod output;
 pub mod phase;
+pub mod plausible;
 pub mod problem;
 pub mod reader;
 pub mod time;
@@ -173,7 +174,8 @@ fn read(reader: &Reader) -> Option<Scene> {
     time::settle(&mut scene, time.step)
         .map_err(|message| reader.wrong(&["time", "step"], message))
         .ok()?;
-    output::check(&scene.output, scene.step, reader);
+    output::check(&mut scene, reader);
+    plausible::check(&scene, reader);
     // The first bed is there already.
     let first = &scene.phases[0];
     let reference = scene.past.reference_of(first);
@@ -236,7 +238,7 @@ fn check_width(reader: &Reader, domain: &Domain, diameter: f64) -> bool {
         let (size, along) = (domain.size[side], ["x", "y"][side]);
         let message = format!(
             "is {size} m along {along}, too narrow for grains of {diameter} m; write {least:.4} m \
-             or more"
+             or more, or smaller grains"
         );
         reader.wrong(&["box", "size"], message);
     }

@@ -1,8 +1,12 @@
 //! `[output]`: which files, which variables, how often.
 
+use super::Scene;
+use super::layers::LOOSEST;
 use super::phase::{End, Phase};
 use super::reader::{Range, Reader, Table};
+use super::tree::Step;
 use super::units::{LENGTH, TIME};
+use crate::protocol;
 
 /// The files of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,22 +40,65 @@ impl Output {
     }
 }
 
-/// A file cannot have more than a row a step of `step` [s].
-pub fn check(output: &Output, step: f64, reader: &Reader) {
+/// A file cannot have more than a row a step. Intervals that were chosen become a step long,
+/// those that the scene states are refused.
+pub fn check(scene: &mut Scene, reader: &Reader) {
+    let (step, output) = (scene.step, &mut scene.output);
     let files = [
-        ("series", &output.series),
-        ("profiles", &output.profiles),
-        ("grains", &output.grains),
-        ("contacts", &output.contacts),
+        ("series", &mut output.series),
+        ("profiles", &mut output.profiles),
+        ("grains", &mut output.grains),
+        ("contacts", &mut output.contacts),
     ];
     for (key, file) in files {
-        if let Some(every) = file.as_ref().map(|file| file.every)
-            && every < step
-        {
+        let path = ["output", key, "every"].map(|key| Step::Key(key.into()));
+        let Some(file) = file.as_mut().filter(|file| file.every < step) else {
+            continue;
+        };
+        if reader.says(&path) {
+            let every = file.every;
             let message = format!("is {every:e} s, shorter than the time step of {step:e} s");
             let message = format!("{message}; write e.g. every = \"1 ms\"");
-            reader.wrong(&["output", key, "every"], message);
+            reader.note(&path, message);
+        } else {
+            file.every = step;
+            reader.choose(&path, TIME.write(step));
         }
+    }
+    if scene.output.profiles.is_some()
+        && let Err(message) = scene.profile_edges()
+    {
+        reader.wrong(&["output", "profiles", "layer"], message);
+    }
+}
+
+/// Layers of a profile; more tell nothing about grains, and fill the disk.
+const MOST_LAYERS: usize = 100_000;
+
+impl Scene {
+    /// Edges of the layers of `profiles.nc` [m]: from the bottom to a little above the bed as it
+    /// will be when settled.
+    ///
+    /// # Errors
+    /// More layers than make sense.
+    pub fn profile_edges(&self) -> Result<Vec<f64>, String> {
+        let (grains, layer) = (&self.start.grains, self.output.layer);
+        let solid: f64 = (0..grains.len()).map(|k| grains.volume(k)).sum();
+        let settled = solid / (LOOSEST * self.domain.area());
+        // A bed that comes settled from a file may be higher than its own volume says.
+        let height = match self.start.contacts.is_empty() {
+            true => settled,
+            false => protocol::bed_height(&self.start).max(settled),
+        };
+        let count = (height / layer).ceil().max(1.0) as usize;
+        if count > MOST_LAYERS {
+            return Err(format!(
+                "is {layer} m, which cuts the bed into {count} layers, more than {MOST_LAYERS}; \
+                 write e.g. one diameter, {:.1e} m",
+                2.0 * grains.mean_radius()
+            ));
+        }
+        Ok((0..=count).map(|k| k as f64 * layer).collect())
     }
 }
 

@@ -28,6 +28,8 @@ pub enum Range {
     NotNegative,
     /// Above the first, at most the second.
     Above(f64, f64),
+    /// From the first to the second, in SI units: beyond them there is no such thing.
+    Within(f64, f64),
 }
 
 impl Range {
@@ -40,12 +42,14 @@ impl Range {
             Self::Positive => x > 0.0,
             Self::NotNegative => x >= 0.0,
             Self::Above(low, high) => x > low && x <= high,
+            Self::Within(low, high) => (low..=high).contains(&x),
         };
         (!fine).then(|| match self {
             Self::Any => unreachable!("every finite number is fine"),
             Self::Positive => "must be above zero".into(),
             Self::NotNegative => "must not be negative".into(),
             Self::Above(low, high) => format!("must be above {low} and at most {high}"),
+            Self::Within(low, high) => format!("must be from {low:e} to {high:e}"),
         })
     }
 }
@@ -68,6 +72,14 @@ impl<'a> Reader<'a> {
     /// The document.
     pub fn document(&self) -> &'a Document {
         self.document
+    }
+
+    /// Does the scene say something at `path`?
+    pub fn says(&self, path: &[Step]) -> bool {
+        let root = Some(&self.document.root);
+        path.iter()
+            .fold(root, |node, step| node.and_then(|node| node.down(step)))
+            .is_some()
     }
 
     /// The text with all that was chosen in it; only for a document without problems.
@@ -453,6 +465,9 @@ fn quantity(value: &Value, kind: &Kind, range: Range) -> Result<f64, String> {
     };
     let x = kind.read(text)?;
     match range.broken_by(x) {
+        Some(why) if matches!(range, Range::Within(..)) => {
+            Err(format!("is {text:?}, {why} {}", kind.unit))
+        }
         Some(why) => Err(format!("is {text:?}, {why}")),
         None => Ok(x),
     }

@@ -35,6 +35,9 @@ fn skin(search: &Table) -> Option<f64> {
     search.quantity("skin", &LENGTH, Range::Positive)
 }
 
+/// Shortest step, in stability limits.
+const SHORTEST: f64 = 1e-6;
+
 /// Set the step of `scene`: as `stated`, if that is stable in every phase, or the default.
 ///
 /// # Errors
@@ -59,6 +62,10 @@ pub fn settle(scene: &mut Scene, stated: Option<f64>) -> Result<(), String> {
                  wall); write less, or leave it out for {default:.3e} s"
             ))
         }
+        Some(step) if step < SHORTEST * limit => Err(format!(
+            "is {step:e} s, less than a millionth of the stability limit of {limit:.3e} s: the run \
+             would take years; write more, or leave it out for {default:.3e} s"
+        )),
         Some(step) => {
             scene.step = step;
             Ok(())
