@@ -175,10 +175,6 @@ fn plan(scene: &Scene) -> Result<Plan> {
     })
 }
 
-fn solid_volume(grains: &dem::Grains) -> f64 {
-    (0..grains.len()).map(|k| grains.volume(k)).sum()
-}
-
 /// Number of steps of `phase` at most, where the height of its bed can only be guessed.
 pub fn expected_steps(scene: &Scene, phase: &Phase) -> u64 {
     let guess = protocol::expected_height(scene);
@@ -303,7 +299,7 @@ impl Run<'_> {
                     past: self.past.clone(),
                 };
                 output::state::save(&self.options.out.join(STATE), &saved, &self.header)?;
-                let summary = bed.summary(self.scene, phase, outcome, done, &now);
+                let summary = bed.summary(&model, phase, outcome, done, &now);
                 return Ok((saved.state, summary));
             }
         }

@@ -287,3 +287,14 @@ fn a_stopped_shear_goes_on_to_the_strain_that_it_was_to_reach() {
     assert_eq!(saved.past.strain, strain);
     assert_eq!(saved.past.unfinished, None);
 }
+
+#[test]
+fn the_summary_and_the_series_know_one_solid_fraction() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, summary) = go(&read(SMALL, &[]).unwrap(), folder.path(), 1);
+    let path = folder.path().join("series.nc");
+    let series = experiments::output::netcdf::open(&path).unwrap();
+    let fraction = series.variable("solid_fraction").unwrap();
+    let last = *fraction.get_values::<f64, _>(..).unwrap().last().unwrap();
+    assert_eq!(summary.phases[2].solid_fraction, last);
+}

@@ -66,19 +66,13 @@ pub fn solid_fraction_between(grains: &Grains, area: f64, low: f64, high: f64) -
 }
 
 /// Solid fraction of the inside of the bed: three mean diameters away from its bottom and
-/// its top, where planes order the grains; of the whole bed where that would leave less
-/// than two diameters.
+/// its top, where planes order the grains, and a quarter of its height in beds less than
+/// twelve diameters high.
 pub fn solid_fraction(model: &Model, state: &State) -> f64 {
     let [low, high] = bed_span(model, state);
-    let diameter = 2.0 * state.grains.mean_radius();
-    let margin = 3.0 * diameter;
-    let inside = [low + margin, high - margin];
-    let [low, high] = if inside[1] - inside[0] >= 2.0 * diameter {
-        inside
-    } else {
-        [low, high]
-    };
-    solid_fraction_between(&state.grains, model.domain.area(), low, high)
+    let margin = (6.0 * state.grains.mean_radius()).min(0.25 * (high - low));
+    let area = model.domain.area();
+    solid_fraction_between(&state.grains, area, low + margin, high - margin)
 }
 
 /// Number of grains that each grain touches; walls are not counted.
@@ -253,9 +247,9 @@ pub(crate) mod tests {
 
     #[test]
     fn a_cubic_lattice_has_a_solid_fraction_of_pi_over_six() {
-        let deep = lattice([2, 3, 10]);
+        let deep = lattice([2, 3, 14]);
         let model = model([4.0, 6.0]);
-        // Inside: heights 6 to 14, four whole layers.
+        // Inside: heights 6 to 22, eight whole layers.
         assert_relative_eq!(
             solid_fraction(&model, &deep),
             PI / 6.0,
@@ -264,9 +258,11 @@ pub(crate) mod tests {
         // A slab of one period has the same fraction wherever it begins.
         let shifted = solid_fraction_between(&deep.grains, 24.0, 6.7, 8.7);
         assert_relative_eq!(shifted, PI / 6.0, max_relative = 1e-14);
-        // Seven layers leave one inside: the whole bed counts.
-        let shallow = lattice([2, 3, 7]);
-        assert_eq!(bed_span(&model, &shallow), [0.0, 14.0]);
+        // Of eight layers the middle half counts: what is missing beside it does not matter.
+        let mut shallow = lattice([2, 3, 8]);
+        assert_eq!(bed_span(&model, &shallow), [0.0, 16.0]);
+        let grains = &mut shallow.grains;
+        (0..5).chain(43..48).for_each(|k| grains.radius[k] = 0.5);
         assert_relative_eq!(
             solid_fraction(&model, &shallow),
             PI / 6.0,

@@ -82,7 +82,8 @@ pub static SERIES: &[Scalar] = &[
     scalar(
         "solid_fraction",
         "1",
-        "solid fraction of the bed, three mean diameters away from bottom and top",
+        "solid fraction of the bed, three mean diameters (at most a quarter of its height) away \
+         from bottom and top",
         |r| measure::solid_fraction(r.model, &r.now.state),
     ),
     scalar(

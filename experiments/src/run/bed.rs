@@ -1,11 +1,10 @@
 //! The bed as a phase measures it: strain, dilation, and what is said at the end.
 
 use super::intervals::Due;
-use super::solid_volume;
 use super::summary::{Outcome, PhaseSummary};
 use crate::output::Frame;
 use crate::protocol::{self, Reference};
-use crate::scene::{Phase, Scene};
+use crate::scene::Phase;
 use dem::{Model, Snapshot, Sums};
 use std::sync::Arc;
 
@@ -65,13 +64,12 @@ impl Bed {
 
     pub fn summary(
         &self,
-        scene: &Scene,
+        model: &Model,
         phase: &Phase,
         outcome: Outcome,
         steps: u64,
         now: &Snapshot,
     ) -> PhaseSummary {
-        let height = protocol::bed_height(&now.state);
         let shear = phase
             .shear
             .map(|_| (self.own_strain(now), self.friction(now)));
@@ -79,9 +77,9 @@ impl Bed {
             name: phase.name.clone(),
             outcome,
             steps,
-            duration: steps as f64 * scene.step,
-            height,
-            solid_fraction: solid_volume(&now.state.grains) / (scene.domain.area() * height),
+            duration: steps as f64 * model.step,
+            height: protocol::bed_height(&now.state),
+            solid_fraction: dem::measure::solid_fraction(model, &now.state),
             shear,
         }
     }

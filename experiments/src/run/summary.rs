@@ -31,7 +31,7 @@ pub struct PhaseSummary {
     pub duration: f64,
     /// Height of the bed at its end [m].
     pub height: f64,
-    /// Solid fraction of the whole bed at its end [-].
+    /// Solid fraction of the inside of the bed at its end, as in `series.nc` [-].
     pub solid_fraction: f64,
     /// Shear strain of the phase, and shear over normal stress at the top in its last fifth.
     pub shear: Option<(f64, f64)>,
