@@ -180,6 +180,25 @@ fn the_stress_profile_is_that_of_the_walls_and_layers() {
     }
 }
 
+/// All that acts on the grains along x from outside comes from the walls.
+#[test]
+fn rough_walls_feel_what_the_grains_feel() {
+    let mut model = model();
+    model.walls[0].surface = Surface::Full;
+    model.walls[1].surface = Surface::Full;
+    let mut solver = Solver::new(model, start(), 1).unwrap();
+    solver.advance(20_000).unwrap();
+    let now = solver.snapshot();
+    let free: DVec3 = now.force.iter().sum();
+    let on_grains = free.x + now.held_force + now.driven_force;
+    let [top, bottom] = ["top", "bottom"].map(|wall| {
+        let name = format!("wall_shear_stress_{wall}_x");
+        read(&solver, &Sums::default(), &name) * solver.model().domain.area()
+    });
+    assert!(top > 1.0, "the driven grains rub on the top wall: {top} N");
+    assert_relative_eq!(top + bottom, -on_grains, epsilon = 1e-12);
+}
+
 #[test]
 fn interval_means_are_the_mean_of_the_steps() {
     let mut solver = sheared(20_000);

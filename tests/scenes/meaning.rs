@@ -109,6 +109,25 @@ fn walls_stand_where_sides_are_not_periodic() {
 }
 
 #[test]
+fn the_series_holds_the_friction_of_the_walls_that_have_some() {
+    let names = |sets: &[&str]| {
+        let series = read(SMALL, sets).unwrap().output.series.unwrap();
+        let mut names = series.variables;
+        names.retain(|name| name.starts_with("wall_shear_stress"));
+        names
+    };
+    assert!(names(&[]).is_empty());
+    let top = ["wall_shear_stress_top_x", "wall_shear_stress_top_y"];
+    assert_eq!(names(&["wall.top.surface=full"]), top);
+    assert_eq!(
+        names(&["wall.top.surface=full", "wall.bottom.surface=full"]).len(),
+        4
+    );
+    let asked = "output.series.variables=[\"wall_shear_stress_bottom_x\"]";
+    assert_eq!(names(&[asked]), ["wall_shear_stress_bottom_x"]);
+}
+
+#[test]
 fn the_ledger_is_kept_only_where_an_output_needs_it() {
     let ledger = |set: &str| {
         let scene = read(SMALL, &[set]).unwrap();

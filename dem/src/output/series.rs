@@ -1,7 +1,8 @@
 //! Scalars of `series.nc`.
 
 use super::{Reading, Scalar, Storage, Variable};
-use crate::{Sums, measure};
+use crate::{Body, Sums, measure};
+use glam::DVec2;
 
 const fn scalar(
     name: &'static str,
@@ -68,6 +69,30 @@ pub static SERIES: &[Scalar] = &[
         "Pa",
         "normal stress on the bottom wall, mean since the last row",
         |r| r.wall_stress_mean(measure::bottom_wall(r.model)),
+    ),
+    scalar(
+        "wall_shear_stress_top_x",
+        "Pa",
+        "x force of the grains on the top wall over its area, at this instant",
+        |r| r.wall_shear_stress(measure::top_wall(r.model)).x,
+    ),
+    scalar(
+        "wall_shear_stress_top_y",
+        "Pa",
+        "y force of the grains on the top wall over its area, at this instant",
+        |r| r.wall_shear_stress(measure::top_wall(r.model)).y,
+    ),
+    scalar(
+        "wall_shear_stress_bottom_x",
+        "Pa",
+        "x force of the grains on the bottom wall over its area, at this instant",
+        |r| r.wall_shear_stress(measure::bottom_wall(r.model)).x,
+    ),
+    scalar(
+        "wall_shear_stress_bottom_y",
+        "Pa",
+        "y force of the grains on the bottom wall over its area, at this instant",
+        |r| r.wall_shear_stress(measure::bottom_wall(r.model)).y,
     ),
     scalar(
         "friction",
@@ -197,6 +222,17 @@ impl Reading<'_> {
         self.mean(self.now.wall_force[w], sum) / self.model.domain.area()
     }
 
+    /// Force of the grains on a wall along x and y, over its area [Pa].
+    fn wall_shear_stress(&self, wall: Option<usize>) -> DVec2 {
+        let Some(wall) = wall else { return DVec2::NAN };
+        let contacts = self.now.state.contacts.iter();
+        let on_grains: DVec2 = contacts
+            .filter(|contact| contact.j == Body::Wall(wall as u32))
+            .map(|contact| contact.force.truncate())
+            .sum();
+        -on_grains / self.model.domain.area()
+    }
+
     /// An entry of the ledger that is a sum over steps; NaN if the sums are not kept.
     fn ledger(&self, entry: f64) -> f64 {
         if self.model.ledger { entry } else { f64::NAN }
@@ -243,6 +279,7 @@ mod tests {
     use crate::measure::tests::model;
     use crate::{Model, Snapshot, Wall};
     use approx::assert_relative_eq;
+    use glam::DVec3;
 
     fn read(name: &str, model: &Model, before: &Sums) -> f64 {
         let named = |s: &&Scalar| s.variable.name == name;
@@ -264,6 +301,23 @@ mod tests {
         assert!(read("normal_stress_top", &lidless, &none).is_nan());
         assert!(read("wall_height", &lidless, &none).is_nan());
         assert_relative_eq!(read("normal_stress_bottom", &lidless, &none), 8.0 / 12.0);
+    }
+
+    #[test]
+    fn walls_feel_what_rubs_on_them() {
+        let model = model([3.0, 4.0]);
+        let mut now = snapshot();
+        // The top wall holds its grain back, the bottom wall drags its own along.
+        now.state.contacts[2].force = DVec3::new(-6.0, 3.0, -8.0);
+        now.state.contacts[1].force = DVec3::new(2.4, 0.0, 8.0);
+        let read = |name: &str| {
+            let named = |s: &&Scalar| s.variable.name == name;
+            now.read(SERIES.iter().find(named).unwrap(), &model, &now.sums)
+        };
+        assert_relative_eq!(read("wall_shear_stress_top_x"), 0.5);
+        assert_relative_eq!(read("wall_shear_stress_top_y"), -0.25);
+        assert_relative_eq!(read("wall_shear_stress_bottom_x"), -0.2);
+        assert_eq!(read("wall_shear_stress_bottom_y"), 0.0);
     }
 
     #[test]

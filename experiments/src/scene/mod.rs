@@ -135,8 +135,9 @@ fn read(reader: &Reader) -> Option<Scene> {
     };
     let phases = phase::read(&root, &context);
     let mean_diameter = grains.as_ref().map_or(1.0, |g| 2.0 * g.mean_radius());
-    let output = output::read(&root, &phases, mean_diameter);
     let [top, bottom] = walls(&root);
+    let rough = [top, bottom].map(|surface| surface == Surface::Full);
+    let output = output::read(&root, &phases, mean_diameter, rough);
     let time = time::read(&root);
     let (origin, grains, bounds) = (origin?, grains?, bounds?);
     let (output, _) = (output?, law?);

@@ -116,12 +116,14 @@ struct Default {
     /// Rows over the whole protocol; none: the file is not written unless asked for.
     rows: Option<f64>,
     /// All variables that it knows.
+    known: Vec<&'static str>,
+    /// Those that it holds.
     variables: Vec<&'static str>,
 }
 
 /// Read `[output]`; `phases` set the default intervals, and the mean `diameter` [m] of the
-/// grains that of the profiles' layers.
-pub fn read(root: &Table, phases: &[Phase], diameter: f64) -> Option<Output> {
+/// grains that of the profiles' layers. `rough`: have the top and the bottom wall the full law?
+pub fn read(root: &Table, phases: &[Phase], diameter: f64, rough: [bool; 2]) -> Option<Output> {
     let total: f64 = phases.iter().map(expected).sum();
     let example = "[output] with series = { every = \"1 ms\" }";
     let table = &root.table_or_empty("output", example)?;
@@ -129,24 +131,28 @@ pub fn read(root: &Table, phases: &[Phase], diameter: f64) -> Option<Output> {
         key: "series",
         example: "series = { every = \"1 ms\" }",
         rows: Some(1000.0),
-        variables: series_names(),
+        known: series_names(),
+        variables: series_names_for(rough),
     };
     let profiles = Default {
         key: "profiles",
         example: "profiles = { every = \"10 ms\" }",
         rows: Some(100.0),
+        known: names(dem::output::PROFILES),
         variables: names(dem::output::PROFILES),
     };
     let grains = Default {
         key: "grains",
         example: "grains = { every = \"50 ms\" }",
         rows: Some(20.0),
+        known: names(dem::output::GRAINS),
         variables: names(dem::output::GRAINS),
     };
     let contacts = Default {
         key: "contacts",
         example: "contacts = { every = \"0.1 s\" }",
         rows: None,
+        known: names(dem::output::CONTACTS),
         variables: names(dem::output::CONTACTS),
     };
     let mut layer = diameter;
@@ -160,6 +166,16 @@ pub fn read(root: &Table, phases: &[Phase], diameter: f64) -> Option<Output> {
         contacts: file(table, &contacts, total, |_| {}),
         layer,
     })
+}
+
+/// Without what is always zero: the friction of frictionless walls.
+fn series_names_for(rough: [bool; 2]) -> Vec<&'static str> {
+    let mut names = series_names();
+    for (wall, rough) in ["top", "bottom"].into_iter().zip(rough) {
+        let start = format!("wall_shear_stress_{wall}");
+        names.retain(|name| rough || !name.starts_with(&start));
+    }
+    names
 }
 
 fn series_names() -> Vec<&'static str> {
@@ -208,12 +224,12 @@ fn file(outer: &Table, default: &Default, total: f64, more: impl FnOnce(&Table))
     more(&table);
     let example = format!(
         "variables = {:?}",
-        &default.variables[..default.variables.len().min(2)]
+        &default.known[..default.known.len().min(2)]
     );
     let variables = table.texts("variables", &example);
     for name in variables.iter().flatten() {
-        if !default.variables.contains(name) {
-            let known = default.variables.join(", ");
+        if !default.known.contains(name) {
+            let known = default.known.join(", ");
             table.wrong(
                 "variables",
                 format!("{name:?} is not known; there are: {known}"),
