@@ -15,6 +15,10 @@ struct Esker {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a scene, from its start to the end of its protocol
+    ///
+    /// Ctrl-C ends it cleanly, with all that was computed on disk. A new run that starts from
+    /// state.h5 has the same bits as one that was not stopped if the state is from the end of a
+    /// phase; from the middle of a phase it goes on as accurately, but not with the same bits.
     Run(Run),
     /// Say what the numbers of a scene imply, without running it
     Check(Check),

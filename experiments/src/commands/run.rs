@@ -67,7 +67,7 @@ pub fn run(arguments: &Run) -> Result<ExitCode> {
         let state = std::path::absolute(options.out.join(STATE))?;
         let phase = summary.phases.last().map_or("", |phase| &phase.name);
         eprintln!(
-            "stopped; to go on, run a scene with [grains] state = {:?}, with the phases from \
+            "stopped in mid-phase; to go on (as accurately, not with the same bits), run a scene with [grains] state = {:?}, with the phases from \
              {phase:?} on, and with start = \"keep\" in that one: it keeps its end, and counts \
              from its beginning",
             state.display().to_string()
