@@ -1,6 +1,7 @@
 //! Are scenes understood, and wrong ones refused with the place and the remedy?
 
 mod bad;
+mod killed;
 mod meaning;
 mod protocol;
 mod ready_made;

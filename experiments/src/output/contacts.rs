@@ -104,6 +104,11 @@ impl OutputFile for ContactsFile {
             )?;
         }
         self.written += count;
-        self.rows.end()
+        self.rows.end();
+        Ok(())
+    }
+
+    fn sync(&mut self) -> Result<()> {
+        self.rows.sync()
     }
 }

@@ -90,6 +90,11 @@ impl OutputFile for GrainsFile {
         for field in &self.fields {
             self.rows.array(&field.variable, &(field.read)(&reading))?;
         }
-        self.rows.end()
+        self.rows.end();
+        Ok(())
+    }
+
+    fn sync(&mut self) -> Result<()> {
+        self.rows.sync()
     }
 }

@@ -86,8 +86,10 @@ trait OutputFile: Send {
     fn name(&self) -> &'static str;
     /// Is `frame` for this file?
     fn wants(&self, frame: &Frame) -> bool;
-    /// Add `frame` and put it on the disk.
+    /// Add `frame`.
     fn write(&mut self, frame: &Frame) -> Result<()>;
+    /// Put all that was added on the disk.
+    fn sync(&mut self) -> Result<()>;
 }
 
 /// Where a file stands until it is whole and may take the place of an older one.

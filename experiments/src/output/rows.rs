@@ -79,11 +79,13 @@ impl Rows {
         put(&mut self.file, variable, &start, values)
     }
 
-    /// End the row and put it on the disk: a run that is killed keeps only what was
-    /// synchronised.
-    pub fn end(&mut self) -> Result<()> {
+    /// End the row.
+    pub fn end(&mut self) {
         self.rows += 1;
-        self.file.sync()?;
-        Ok(())
+    }
+
+    /// Put all rows on the disk: a run that is killed keeps only what was synchronised.
+    pub fn sync(&mut self) -> Result<()> {
+        Ok(self.file.sync()?)
     }
 }

@@ -46,6 +46,11 @@ impl OutputFile for SeriesFile {
         for series in &self.variables {
             self.rows.scalar(series.variable(), series.read(frame))?;
         }
-        self.rows.end()
+        self.rows.end();
+        Ok(())
+    }
+
+    fn sync(&mut self) -> Result<()> {
+        self.rows.sync()
     }
 }

@@ -3,13 +3,19 @@
 use super::netcdf::keep_quiet;
 use super::{Frame, Header, NAMES, OutputFile, Plan, create_files, partial};
 use anyhow::{Context, Result, anyhow, ensure};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 /// Frames that may wait; a frame of a million grains takes half a gigabyte.
 const WAITING: usize = 2;
+
+/// How often what was written goes to the disk. A run that is killed loses what came later; one
+/// that is killed at that very moment may leave a file that cannot be read. Rows that follow each
+/// other fast would be such moments all the time, and a sync costs several times what the row does.
+const SYNC_EVERY: Duration = Duration::from_secs(1);
 
 /// Writes frames on a thread of its own.
 #[derive(Debug)]
@@ -111,14 +117,34 @@ fn write_all(
     frames: &Receiver<Frame>,
 ) -> Result<()> {
     keep_quiet();
-    for frame in frames {
-        for file in files.iter_mut().filter(|file| file.wants(&frame)) {
-            let path: PathBuf = dir.join(file.name());
-            file.write(&frame).with_context(|| {
-                let time = frame.snapshot.state.time;
+    sync(dir, &mut files)?;
+    let mut synchronised = Instant::now();
+    loop {
+        let frame = match frames.recv_timeout(SYNC_EVERY) {
+            Ok(frame) => Some(frame),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => return sync(dir, &mut files),
+        };
+        for file in &mut files {
+            let Some(frame) = frame.as_ref().filter(|frame| file.wants(frame)) else {
+                continue;
+            };
+            file.write(frame).with_context(|| {
+                let (path, time) = (dir.join(file.name()), frame.snapshot.state.time);
                 format!("cannot write {} at t = {time} s", path.display())
             })?;
         }
+        if synchronised.elapsed() >= SYNC_EVERY {
+            sync(dir, &mut files)?;
+            synchronised = Instant::now();
+        }
+    }
+}
+
+fn sync(dir: &Path, files: &mut [Box<dyn OutputFile>]) -> Result<()> {
+    for file in files {
+        file.sync()
+            .with_context(|| format!("cannot write {}", dir.join(file.name()).display()))?;
     }
     Ok(())
 }
@@ -135,7 +161,6 @@ mod tests {
     };
     use glam::DVec3;
     use std::sync::Arc;
-    use std::time::{Duration, Instant};
 
     /// Two grains on each other between walls 4 m apart, over 12 m²; `contacts` of the
     /// three are there.
