@@ -10,13 +10,13 @@ mod summary;
 pub use summary::{Outcome, PhaseSummary, Summary};
 
 use crate::output::state::Saved;
-use crate::output::{self, Header, Plan, Writer};
+use crate::output::{self, FileKind, Header, Plan, Writer};
 use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
 use crate::scene::{self, Phase, Scene};
 use anyhow::{Context, Error, Result, bail, ensure};
 use bed::Bed;
 use dem::{Drive, Model, Solver, State, Sums};
-use intervals::{Due, Intervals};
+use intervals::Intervals;
 use pace::Pace;
 use progress::Progress;
 use rest::RestWatch;
@@ -117,10 +117,8 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
 
 /// See that the folder holds no result.
 fn check_room(out: &Path, force: bool) -> Result<()> {
-    let mut paths = output::NAMES
-        .into_iter()
-        .chain([STATE])
-        .map(|name| out.join(name));
+    let names = FileKind::all().map(FileKind::file_name);
+    let mut paths = names.chain([STATE.into()]).map(|name| out.join(name));
     if let (Some(first), false) = (paths.find(|path| path.exists()), force) {
         bail!(
             "{} exists; choose another folder with --out, or replace it with --force",
@@ -145,15 +143,9 @@ fn check_start(scene: &Scene, threads: usize) -> Result<()> {
 /// Remove old results that this run does not replace, so that no folder holds two runs. An old
 /// state stays until the new one replaces it: this run may have started from it.
 fn remove_others(out: &Path, output: &scene::Output) -> Result<()> {
-    let files = [
-        &output.series,
-        &output.profiles,
-        &output.grains,
-        &output.contacts,
-    ];
-    let others = output::NAMES.iter().zip(files).filter(|(_, f)| f.is_none());
+    let others = output.files.iter().filter(|(_, file)| file.is_none());
     for path in others
-        .map(|(name, _)| out.join(name))
+        .map(|(kind, _)| out.join(kind.file_name()))
         .filter(|p| p.exists())
     {
         let removed = std::fs::remove_file(&path);
@@ -164,13 +156,9 @@ fn remove_others(out: &Path, output: &scene::Output) -> Result<()> {
 
 /// Which variables, and the layers of the profiles.
 fn plan(scene: &Scene) -> Result<Plan> {
-    let names =
-        |file: &Option<scene::output::File>| file.as_ref().map(|file| file.variables.clone());
+    let files = scene.output.files.clone();
     Ok(Plan {
-        series: names(&scene.output.series),
-        profiles: names(&scene.output.profiles),
-        grains: names(&scene.output.grains),
-        contacts: names(&scene.output.contacts),
+        variables: files.map(|_, file| file.map(|file| file.variables)),
         profile_edges: scene.profile_edges().map_err(Error::msg)?,
     })
 }
@@ -236,7 +224,8 @@ impl Run<'_> {
         let model = Arc::new(solver.model().clone());
         if number == 0 {
             let now = Arc::new(solver.snapshot());
-            self.writer.send(bed.frame(&model, &now, Due::START))?;
+            self.writer
+                .send(bed.frame(&model, &now, intervals::START))?;
         }
         loop {
             let next = self.intervals.next(done).min(watch.next(done)).min(total);
@@ -251,7 +240,7 @@ impl Run<'_> {
             let mut due = self.intervals.due(done);
             let look = done == watch.next(done - 1);
             let stopped = self.stop.load(Ordering::Relaxed);
-            if !(due.any() || look || stopped || done == total) {
+            if !(intervals::any(due) || look || stopped || done == total) {
                 continue;
             }
             let now = Arc::new(solver.snapshot());
@@ -281,7 +270,7 @@ impl Run<'_> {
             if outcome.is_some() {
                 due = self.intervals.last();
             }
-            if due.any() {
+            if intervals::any(due) {
                 self.writer.send(bed.frame(&model, &now, due))?;
                 bed.read(due, &now);
             }

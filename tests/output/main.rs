@@ -10,6 +10,7 @@ use dem::{
     Body, ContactLaw, Domain, Drive, Horizontal, Model, Solver, State, StressLoad, Sums, Surface,
     Wall, WallMotion, WallState,
 };
+use enum_map::EnumMap;
 use experiments::output::{Frame, Header, Plan, Writer, catalogue, state};
 use experiments::protocol::Past;
 use glam::DVec3;
@@ -103,15 +104,9 @@ fn sheared(steps: u64) -> Solver {
 
 /// Every variable of every file.
 fn everything() -> Plan {
-    let names = |fields: &[dem::output::Field]| {
-        Some(fields.iter().map(|f| f.variable.name.into()).collect())
-    };
-    let series = catalogue::series().map(|s| s.variable().name.into());
+    let names = |kind| catalogue::names(kind).into_iter().map(Into::into).collect();
     Plan {
-        series: Some(series.collect()),
-        profiles: names(dem::output::PROFILES),
-        grains: names(dem::output::GRAINS),
-        contacts: names(dem::output::CONTACTS),
+        variables: EnumMap::from_fn(|kind| Some(names(kind))),
         profile_edges: vec![0.0, 0.03, 0.06, 0.09],
     }
 }
@@ -251,10 +246,7 @@ fn writing_does_not_change_a_bit() {
             phase: 0,
             strain: 0.0,
             dilation: 0.0,
-            series: true,
-            profiles: true,
-            grains: true,
-            contacts: true,
+            due: EnumMap::from_fn(|_| true),
         };
         writer.send(frame).unwrap();
     }

@@ -3,6 +3,7 @@
 use super::{SMALL, read};
 use dem::contact::{Linear, Sliding, Tension};
 use dem::{ContactLaw, WallMotion};
+use experiments::output::FileKind;
 use experiments::ready;
 use experiments::scene::{Motion, Shear};
 use glam::DVec3;
@@ -111,7 +112,8 @@ fn walls_stand_where_sides_are_not_periodic() {
 #[test]
 fn the_series_holds_the_friction_of_the_walls_that_have_some() {
     let names = |sets: &[&str]| {
-        let series = read(SMALL, sets).unwrap().output.series.unwrap();
+        let output = read(SMALL, sets).unwrap().output;
+        let series = output.files[FileKind::Series].clone().unwrap();
         let mut names = series.variables;
         names.retain(|name| name.starts_with("wall_shear_stress"));
         names
@@ -184,6 +186,7 @@ fn intervals_that_nobody_stated_are_never_shorter_than_a_step() {
     let ends = ["settle", "consolidate", "shear"].map(|phase| format!("phase.{phase}.{end}"));
     let ends = ends.each_ref().map(String::as_str);
     let scene = read(SMALL, &ends).unwrap();
-    assert_eq!(scene.output.series.unwrap().every, scene.step);
-    assert!(scene.output.grains.unwrap().every > scene.step);
+    let every = |kind| scene.output.files[kind].as_ref().unwrap().every;
+    assert_eq!(every(FileKind::Series), scene.step);
+    assert!(every(FileKind::Grains) > scene.step);
 }

@@ -2,7 +2,7 @@
 
 use super::{SMALL, read};
 use dem::{Horizontal, State};
-use experiments::output::state;
+use experiments::output::{FileKind, state};
 use experiments::protocol::{bed_height, prepare, wall_height};
 use experiments::run::{Options, Outcome, Summary, run};
 use experiments::scene::Scene;
@@ -241,7 +241,10 @@ fn a_run_that_is_refused_leaves_old_results() {
 
     // Some of the files can be made, not all.
     let mut scene = read(&text, &[]).unwrap();
-    scene.output.grains.as_mut().unwrap().variables = vec!["vorticity".into()];
+    scene.output.files[FileKind::Grains]
+        .as_mut()
+        .unwrap()
+        .variables = vec!["vorticity".into()];
     assert!(run(&scene, &options, &never).is_err());
     assert!(before == all(), "an unknown variable");
     let scene = read(&text, &["output.contacts.every=1 ms"]).unwrap();

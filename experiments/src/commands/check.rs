@@ -297,18 +297,12 @@ fn left_out(scene: &Scene) {
     if scene.domain.periodic == [true; 2] {
         out.push("vertical walls");
     }
-    let files = [
-        ("series.nc", &scene.output.series),
-        ("profiles.nc", &scene.output.profiles),
-        ("grains.nc", &scene.output.grains),
-        ("contacts.nc", &scene.output.contacts),
-    ];
-    out.extend(
-        files
-            .iter()
-            .filter(|(_, file)| file.is_none())
-            .map(|(name, _)| *name),
-    );
+    let files = scene.output.files.iter();
+    let none: Vec<String> = files
+        .filter(|(_, file)| file.is_none())
+        .map(|(kind, _)| kind.file_name())
+        .collect();
+    out.extend(none.iter().map(String::as_str));
     if !out.is_empty() {
         line("left out", &out.join(", "));
     }

@@ -1,6 +1,6 @@
 //! The catalogue of all outputs: what the grains offer, and what the protocol adds.
 
-use super::{Frame, Plan};
+use super::{FileKind, Frame};
 use anyhow::{Result, bail};
 use dem::output::{CONTACTS, Field, GRAINS, PROFILES, Reading, SERIES, Scalar, Storage, Variable};
 
@@ -87,49 +87,28 @@ pub fn series() -> impl Iterator<Item = Series> {
     protocol.chain(SERIES.iter().map(Series::Grains))
 }
 
-/// The variables that a plan names, resolved.
-#[derive(Debug)]
-pub(super) struct Chosen {
-    pub series: Option<Vec<Series>>,
-    pub profiles: Option<Vec<&'static Field>>,
-    pub grains: Option<Vec<&'static Field>>,
-    pub contacts: Option<Vec<&'static Field>>,
-}
-
-impl Chosen {
-    /// Look up the names of `plan`; an unknown one is refused.
-    pub fn new(plan: &Plan) -> Result<Self> {
-        let all: Vec<_> = series().collect();
-        let fields = |file, names: &Option<Vec<String>>, all: &'static [Field]| {
-            let all: Vec<_> = all.iter().collect();
-            choose(file, names, &all, |f| f.variable.name)
-        };
-        Ok(Self {
-            series: choose("series.nc", &plan.series, &all, |s| s.variable().name)?,
-            profiles: fields("profiles.nc", &plan.profiles, PROFILES)?,
-            grains: fields("grains.nc", &plan.grains, GRAINS)?,
-            contacts: fields("contacts.nc", &plan.contacts, CONTACTS)?,
-        })
+/// Names of all variables of a file.
+pub fn names(kind: FileKind) -> Vec<&'static str> {
+    let of = |fields: &[Field]| fields.iter().map(|field| field.variable.name).collect();
+    match kind {
+        FileKind::Series => series().map(|series| series.variable().name).collect(),
+        FileKind::Profiles => of(PROFILES),
+        FileKind::Grains => of(GRAINS),
+        FileKind::Contacts => of(CONTACTS),
     }
 }
 
-/// Those of `all` that are named, in the order of the catalogue.
-fn choose<T: Copy>(
-    file: &str,
-    names: &Option<Vec<String>>,
-    all: &[T],
+/// Those of `all` that are named, in the order of the catalogue; an unknown name is refused.
+pub(super) fn named<'a, T>(
+    all: &'a [T],
+    names: &[String],
     name_of: impl Fn(&T) -> &'static str,
-) -> Result<Option<Vec<T>>> {
-    let Some(names) = names else { return Ok(None) };
+) -> Result<Vec<&'a T>> {
     let known: Vec<_> = all.iter().map(&name_of).collect();
-    for name in names {
-        if !known.contains(&name.as_str()) {
-            bail!(
-                "{file} has no variable \"{name}\"; it knows {}",
-                known.join(", ")
-            );
-        }
+    if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+        let known = known.join(", ");
+        bail!("there is no variable {name:?}; it knows {known}");
     }
     let named = |item: &&T| names.iter().any(|name| name == name_of(item));
-    Ok(Some(all.iter().filter(named).copied().collect()))
+    Ok(all.iter().filter(named).collect())
 }

@@ -37,8 +37,6 @@ pub(super) struct ContactsFile {
 }
 
 impl ContactsFile {
-    pub const NAME: &str = "contacts.nc";
-
     /// `rows` makes the file, given how many rows are kept together.
     pub fn create(
         rows: impl FnOnce(usize) -> Result<Rows>,
@@ -75,14 +73,6 @@ impl ContactsFile {
 }
 
 impl OutputFile for ContactsFile {
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
-
-    fn wants(&self, frame: &Frame) -> bool {
-        frame.contacts
-    }
-
     fn write(&mut self, frame: &Frame) -> Result<()> {
         let reading = FieldReading {
             model: &frame.model,

@@ -32,8 +32,6 @@ pub(super) struct GrainsFile {
 }
 
 impl GrainsFile {
-    pub const NAME: &str = "grains.nc";
-
     /// `rows` makes the file, given how many rows are kept together.
     pub fn create(
         rows: impl FnOnce(usize) -> Result<Rows>,
@@ -72,14 +70,6 @@ impl GrainsFile {
 }
 
 impl OutputFile for GrainsFile {
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
-
-    fn wants(&self, frame: &Frame) -> bool {
-        frame.grains
-    }
-
     fn write(&mut self, frame: &Frame) -> Result<()> {
         let reading = FieldReading {
             model: &frame.model,

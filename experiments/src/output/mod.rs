@@ -14,6 +14,8 @@ mod writer;
 pub use writer::Writer;
 
 use anyhow::{Context, Result};
+use dem::output::{CONTACTS, GRAINS, PROFILES};
+use enum_map::{Enum, EnumMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,19 +31,50 @@ pub struct Header {
     pub seed: u64,
 }
 
-/// Which files are wanted, and which variables in them. `None`: no such file.
+/// The NetCDF files of a run.
+#[derive(Clone, Copy, Debug, Enum, PartialEq, Eq)]
+pub enum FileKind {
+    /// One number of each kind at each instant.
+    Series,
+    /// Means over horizontal layers.
+    Profiles,
+    /// Every grain.
+    Grains,
+    /// Every contact.
+    Contacts,
+}
+
+impl FileKind {
+    /// What scenes call it.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Series => "series",
+            Self::Profiles => "profiles",
+            Self::Grains => "grains",
+            Self::Contacts => "contacts",
+        }
+    }
+
+    /// Its name in the folder of the results.
+    pub fn file_name(self) -> String {
+        format!("{}.nc", self.key())
+    }
+
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        EnumMap::<Self, ()>::default()
+            .into_iter()
+            .map(|(kind, ())| kind)
+    }
+}
+
+/// Which files are wanted, and which variables in them.
 ///
 /// Time, phase and strain stand in every file without being asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
-    /// Names of the variables of `series.nc`.
-    pub series: Option<Vec<String>>,
-    /// Names of the variables of `profiles.nc`.
-    pub profiles: Option<Vec<String>>,
-    /// Names of the variables of `grains.nc`.
-    pub grains: Option<Vec<String>>,
-    /// Names of the variables of `contacts.nc`.
-    pub contacts: Option<Vec<String>>,
+    /// Names of the variables of each file; none: no such file.
+    pub variables: EnumMap<FileKind, Option<Vec<String>>>,
     /// Edges of the profiles' layers along z [m], ascending.
     pub profile_edges: Vec<f64>,
 }
@@ -62,35 +95,19 @@ pub struct Frame {
     pub strain: f64,
     /// Volumetric strain of the bed since the phase began, positive when it swells.
     pub dilation: f64,
-    /// Does the frame go to `series.nc`?
-    pub series: bool,
-    /// Does the frame go to `profiles.nc`?
-    pub profiles: bool,
-    /// Does the frame go to `grains.nc`?
-    pub grains: bool,
-    /// Does the frame go to `contacts.nc`?
-    pub contacts: bool,
+    /// To which files the frame goes.
+    pub due: EnumMap<FileKind, bool>,
 }
-
-/// Names of the files that a [`Writer`] may make.
-pub const NAMES: [&str; 4] = [
-    series::SeriesFile::NAME,
-    profiles::ProfilesFile::NAME,
-    grains::GrainsFile::NAME,
-    contacts::ContactsFile::NAME,
-];
 
 /// One file of a run.
 trait OutputFile: Send {
-    /// Its name in the folder.
-    fn name(&self) -> &'static str;
-    /// Is `frame` for this file?
-    fn wants(&self, frame: &Frame) -> bool;
     /// Add `frame`.
     fn write(&mut self, frame: &Frame) -> Result<()>;
     /// Put all that was added on the disk.
     fn sync(&mut self) -> Result<()>;
 }
+
+type Files = Vec<(FileKind, Box<dyn OutputFile>)>;
 
 /// Where a file stands until it is whole and may take the place of an older one.
 fn partial(path: &Path) -> PathBuf {
@@ -106,35 +123,40 @@ fn create_files(
     plan: &Plan,
     phases: &[String],
     bed: &dem::Grains,
-) -> Result<Vec<Box<dyn OutputFile>>> {
-    use {contacts::ContactsFile, grains::GrainsFile, profiles::ProfilesFile, series::SeriesFile};
-
-    let chosen = catalogue::Chosen::new(plan)?;
-    let rows = |name| {
-        let path = partial(&dir.join(name));
-        move |chunk| rows::Rows::create(&path, header, phases, chunk)
-    };
-    let cannot = |name| format!("cannot make {}", dir.join(name).display());
-    let mut files: Vec<Box<dyn OutputFile>> = Vec::new();
-    if let Some(variables) = chosen.series {
-        let name = SeriesFile::NAME;
-        let file = SeriesFile::create(rows(name), variables);
-        files.push(Box::new(file.with_context(|| cannot(name))?));
-    }
-    if let Some(fields) = chosen.profiles {
-        let name = ProfilesFile::NAME;
-        let file = ProfilesFile::create(rows(name), fields, plan.profile_edges.clone());
-        files.push(Box::new(file.with_context(|| cannot(name))?));
-    }
-    if let Some(fields) = chosen.grains {
-        let name = GrainsFile::NAME;
-        let file = GrainsFile::create(rows(name), fields, bed);
-        files.push(Box::new(file.with_context(|| cannot(name))?));
-    }
-    if let Some(fields) = chosen.contacts {
-        let name = ContactsFile::NAME;
-        let file = ContactsFile::create(rows(name), fields);
-        files.push(Box::new(file.with_context(|| cannot(name))?));
+) -> Result<Files> {
+    let mut files = Files::new();
+    for (kind, names) in &plan.variables {
+        let Some(names) = names else { continue };
+        let path = dir.join(kind.file_name());
+        let rows = |chunk| rows::Rows::create(&partial(&path), header, phases, chunk);
+        let file = create_file(kind, names, rows, plan, bed);
+        let cannot = || format!("cannot make {}", path.display());
+        files.push((kind, file.with_context(cannot)?));
     }
     Ok(files)
+}
+
+fn create_file(
+    kind: FileKind,
+    names: &[String],
+    rows: impl FnOnce(usize) -> Result<rows::Rows>,
+    plan: &Plan,
+    bed: &dem::Grains,
+) -> Result<Box<dyn OutputFile>> {
+    let fields =
+        |all| catalogue::named(all, names, |field: &dem::output::Field| field.variable.name);
+    Ok(match kind {
+        FileKind::Series => {
+            let all: Vec<_> = catalogue::series().collect();
+            let variables = catalogue::named(&all, names, |series| series.variable().name)?;
+            let variables = variables.into_iter().copied().collect();
+            Box::new(series::SeriesFile::create(rows, variables)?)
+        }
+        FileKind::Profiles => {
+            let (fields, edges) = (fields(PROFILES)?, plan.profile_edges.clone());
+            Box::new(profiles::ProfilesFile::create(rows, fields, edges)?)
+        }
+        FileKind::Grains => Box::new(grains::GrainsFile::create(rows, fields(GRAINS)?, bed)?),
+        FileKind::Contacts => Box::new(contacts::ContactsFile::create(rows, fields(CONTACTS)?)?),
+    })
 }

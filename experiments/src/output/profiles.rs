@@ -33,8 +33,6 @@ pub(super) struct ProfilesFile {
 }
 
 impl ProfilesFile {
-    pub const NAME: &str = "profiles.nc";
-
     /// `rows` makes the file, given how many rows are kept together; `edges` [m] of the
     /// layers, ascending.
     pub fn create(
@@ -85,14 +83,6 @@ impl ProfilesFile {
 }
 
 impl OutputFile for ProfilesFile {
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
-
-    fn wants(&self, frame: &Frame) -> bool {
-        frame.profiles
-    }
-
     fn write(&mut self, frame: &Frame) -> Result<()> {
         let reading = FieldReading {
             model: &frame.model,

@@ -14,8 +14,6 @@ pub(super) struct SeriesFile {
 }
 
 impl SeriesFile {
-    pub const NAME: &str = "series.nc";
-
     /// `rows` makes the file, given how many rows are kept together.
     pub fn create(
         rows: impl FnOnce(usize) -> Result<Rows>,
@@ -33,14 +31,6 @@ impl SeriesFile {
 }
 
 impl OutputFile for SeriesFile {
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
-
-    fn wants(&self, frame: &Frame) -> bool {
-        frame.series
-    }
-
     fn write(&mut self, frame: &Frame) -> Result<()> {
         self.rows.begin(frame)?;
         for series in &self.variables {

@@ -1,7 +1,7 @@
 //! A thread that writes, so that stepping does not wait for the disk.
 
 use super::netcdf::keep_quiet;
-use super::{Frame, Header, NAMES, OutputFile, Plan, create_files, partial};
+use super::{FileKind, Files, Frame, Header, Plan, create_files, partial};
 use anyhow::{Context, Result, anyhow, ensure};
 use std::path::Path;
 use std::sync::Mutex;
@@ -90,8 +90,8 @@ impl Drop for Writer {
 }
 
 /// Let the new files take the places of old ones.
-fn take_places(dir: &Path, files: &[Box<dyn OutputFile>]) -> Result<()> {
-    let paths = || files.iter().map(|file| dir.join(file.name()));
+fn take_places(dir: &Path, files: &Files) -> Result<()> {
+    let paths = || files.iter().map(|(kind, _)| dir.join(kind.file_name()));
     for path in paths() {
         ensure!(!path.is_dir(), "{} is a folder; move it", path.display());
     }
@@ -104,18 +104,14 @@ fn take_places(dir: &Path, files: &[Box<dyn OutputFile>]) -> Result<()> {
 
 /// Take away what was made of files that could not all be made.
 fn remove_partial(dir: &Path) {
-    for name in NAMES {
+    for kind in FileKind::all() {
         // It may not have come to this one.
-        let _ = std::fs::remove_file(partial(&dir.join(name)));
+        let _ = std::fs::remove_file(partial(&dir.join(kind.file_name())));
     }
 }
 
 /// Write frames until the last sender is gone.
-fn write_all(
-    dir: &Path,
-    mut files: Vec<Box<dyn OutputFile>>,
-    frames: &Receiver<Frame>,
-) -> Result<()> {
+fn write_all(dir: &Path, mut files: Files, frames: &Receiver<Frame>) -> Result<()> {
     keep_quiet();
     sync(dir, &mut files)?;
     let mut synchronised = Instant::now();
@@ -125,12 +121,12 @@ fn write_all(
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => return sync(dir, &mut files),
         };
-        for file in &mut files {
-            let Some(frame) = frame.as_ref().filter(|frame| file.wants(frame)) else {
+        for (kind, file) in &mut files {
+            let Some(frame) = frame.as_ref().filter(|frame| frame.due[*kind]) else {
                 continue;
             };
             file.write(frame).with_context(|| {
-                let (path, time) = (dir.join(file.name()), frame.snapshot.state.time);
+                let (path, time) = (dir.join(kind.file_name()), frame.snapshot.state.time);
                 format!("cannot write {} at t = {time} s", path.display())
             })?;
         }
@@ -141,10 +137,10 @@ fn write_all(
     }
 }
 
-fn sync(dir: &Path, files: &mut [Box<dyn OutputFile>]) -> Result<()> {
-    for file in files {
+fn sync(dir: &Path, files: &mut Files) -> Result<()> {
+    for (kind, file) in files {
         file.sync()
-            .with_context(|| format!("cannot write {}", dir.join(file.name()).display()))?;
+            .with_context(|| format!("cannot write {}", dir.join(kind.file_name()).display()))?;
     }
     Ok(())
 }
@@ -154,11 +150,11 @@ mod tests {
     use super::*;
     use crate::output::catalogue;
     use dem::contact::{Linear, Tension};
-    use dem::output::{CONTACTS, GRAINS, PROFILES};
     use dem::{
         Body, Contact, ContactLaw, Domain, History, Ledger, Model, Snapshot, State, Sums, Surface,
         Wall, WallMotion, WallState,
     };
+    use enum_map::EnumMap;
     use glam::DVec3;
     use std::sync::Arc;
 
@@ -233,23 +229,14 @@ mod tests {
             phase: 1,
             strain: 10.0 * time,
             dilation: 0.02,
-            series: true,
-            profiles: true,
-            grains: true,
-            contacts: true,
+            due: EnumMap::from_fn(|_| true),
         }
     }
 
     fn everything() -> Plan {
-        let names = |fields: &[dem::output::Field]| {
-            Some(fields.iter().map(|f| f.variable.name.into()).collect())
-        };
-        let series = catalogue::series().map(|s| s.variable().name.into());
+        let names = |kind| catalogue::names(kind).into_iter().map(Into::into).collect();
         Plan {
-            series: Some(series.collect()),
-            profiles: names(PROFILES),
-            grains: names(GRAINS),
-            contacts: names(CONTACTS),
+            variables: EnumMap::from_fn(|kind| Some(names(kind))),
             profile_edges: vec![0.0, 2.0, 4.0],
         }
     }
@@ -402,14 +389,15 @@ mod tests {
     fn what_does_not_exist_cannot_be_written() {
         let dir = tempfile::tempdir().unwrap();
         let refused = |plan| format!("{:#}", start(dir.path(), &plan).unwrap_err());
-        let unknown = refused(Plan {
-            profiles: Some(vec!["vorticity".into()]),
-            ..everything()
-        });
-        assert!(
-            unknown.contains("profiles.nc has no variable \"vorticity\""),
-            "{unknown}"
-        );
+        let mut plan = everything();
+        plan.variables[FileKind::Profiles] = Some(vec!["vorticity".into()]);
+        let unknown = refused(plan);
+        for part in [
+            "profiles.nc",
+            "no variable \"vorticity\"; it knows velocity",
+        ] {
+            assert!(unknown.contains(part), "{unknown}");
+        }
         let disordered = refused(Plan {
             profile_edges: vec![1.0, 0.0],
             ..everything()
@@ -420,10 +408,8 @@ mod tests {
     #[test]
     fn only_what_is_planned_is_made() {
         let dir = tempfile::tempdir().unwrap();
-        let plan = Plan {
-            series: Some(vec!["strain".into(), "wall_height".into()]),
-            ..Plan::default()
-        };
+        let mut plan = Plan::default();
+        plan.variables[FileKind::Series] = Some(vec!["strain".into(), "wall_height".into()]);
         let writer = start(dir.path(), &plan).unwrap();
         writer.send(frame(0.1, 3)).unwrap();
         writer.finish().unwrap();

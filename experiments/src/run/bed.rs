@@ -2,7 +2,7 @@
 
 use super::intervals::Due;
 use super::summary::{Outcome, PhaseSummary};
-use crate::output::Frame;
+use crate::output::{FileKind, Frame};
 use crate::protocol::{self, Reference};
 use crate::scene::Phase;
 use dem::{Model, Snapshot, Sums};
@@ -38,15 +38,12 @@ impl Bed {
             phase: self.number as u32,
             strain: self.strain(now),
             dilation: protocol::bed_height(&now.state) / self.reference.height - 1.0,
-            series: due.series,
-            profiles: due.profiles,
-            grains: due.grains,
-            contacts: due.contacts,
+            due,
         }
     }
 
     pub fn read(&mut self, due: Due, now: &Snapshot) {
-        if due.series {
+        if due[FileKind::Series] {
             self.before = now.sums.clone();
             self.readings.push(now.sums.clone());
         }

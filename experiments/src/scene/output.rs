@@ -6,19 +6,15 @@ use super::phase::{End, Phase};
 use super::reader::{Range, Reader, Table};
 use super::tree::Step;
 use super::units::{LENGTH, TIME};
+use crate::output::{FileKind, catalogue};
 use crate::protocol;
+use enum_map::EnumMap;
 
 /// The files of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// `series.nc`; none: not written.
-    pub series: Option<File>,
-    /// `profiles.nc`.
-    pub profiles: Option<File>,
-    /// `grains.nc`.
-    pub grains: Option<File>,
-    /// `contacts.nc`.
-    pub contacts: Option<File>,
+    /// Each of them; none: not written.
+    pub files: EnumMap<FileKind, Option<File>>,
     /// Thickness of the profiles' layers [m].
     pub layer: f64,
 }
@@ -35,23 +31,17 @@ pub struct File {
 impl Output {
     /// Does any variable need the sums of the energy ledger?
     pub fn needs_ledger(&self) -> bool {
-        let series = self.series.iter().flat_map(|file| &file.variables);
-        series.into_iter().any(|name| needs_sums(name))
+        let series = self.files[FileKind::Series].as_ref();
+        series.is_some_and(|file| file.variables.iter().any(|name| needs_sums(name)))
     }
 }
 
 /// A file cannot have more than a row a step. Intervals that were chosen become a step long,
 /// those that the scene states are refused.
 pub fn check(scene: &mut Scene, reader: &Reader) {
-    let (step, output) = (scene.step, &mut scene.output);
-    let files = [
-        ("series", &mut output.series),
-        ("profiles", &mut output.profiles),
-        ("grains", &mut output.grains),
-        ("contacts", &mut output.contacts),
-    ];
-    for (key, file) in files {
-        let path = ["output", key, "every"].map(|key| Step::Key(key.into()));
+    let step = scene.step;
+    for (kind, file) in &mut scene.output.files {
+        let path = ["output", kind.key(), "every"].map(|key| Step::Key(key.into()));
         let Some(file) = file.as_mut().filter(|file| file.every < step) else {
             continue;
         };
@@ -65,7 +55,7 @@ pub fn check(scene: &mut Scene, reader: &Reader) {
             reader.choose(&path, TIME.write(step));
         }
     }
-    if scene.output.profiles.is_some()
+    if scene.output.files[FileKind::Profiles].is_some()
         && let Err(message) = scene.profile_edges()
     {
         reader.wrong(&["output", "profiles", "layer"], message);
@@ -109,82 +99,42 @@ fn needs_sums(name: &str) -> bool {
         .any(|start| name.starts_with(start))
 }
 
-/// What a file is unless the scene says otherwise.
-struct Default {
-    key: &'static str,
-    example: &'static str,
-    /// Rows over the whole protocol; none: the file is not written unless asked for.
-    rows: Option<f64>,
-    /// All variables that it knows.
-    known: Vec<&'static str>,
-    /// Those that it holds.
-    variables: Vec<&'static str>,
-}
-
 /// Read `[output]`; `phases` set the default intervals, and the mean `diameter` [m] of the
 /// grains that of the profiles' layers. `rough`: have the top and the bottom wall the full law?
 pub fn read(root: &Table, phases: &[Phase], diameter: f64, rough: [bool; 2]) -> Option<Output> {
     let total: f64 = phases.iter().map(expected).sum();
     let example = "[output] with series = { every = \"1 ms\" }";
     let table = &root.table_or_empty("output", example)?;
-    let series = Default {
-        key: "series",
-        example: "series = { every = \"1 ms\" }",
-        rows: Some(1000.0),
-        known: series_names(),
-        variables: series_names_for(rough),
-    };
-    let profiles = Default {
-        key: "profiles",
-        example: "profiles = { every = \"10 ms\" }",
-        rows: Some(100.0),
-        known: names(dem::output::PROFILES),
-        variables: names(dem::output::PROFILES),
-    };
-    let grains = Default {
-        key: "grains",
-        example: "grains = { every = \"50 ms\" }",
-        rows: Some(20.0),
-        known: names(dem::output::GRAINS),
-        variables: names(dem::output::GRAINS),
-    };
-    let contacts = Default {
-        key: "contacts",
-        example: "contacts = { every = \"0.1 s\" }",
-        rows: None,
-        known: names(dem::output::CONTACTS),
-        variables: names(dem::output::CONTACTS),
-    };
     let mut layer = diameter;
-    let of_profiles = |table: &Table| {
-        layer = table.quantity_or("layer", &LENGTH, Range::Positive, diameter);
-    };
-    Some(Output {
-        series: file(table, &series, total, |_| {}),
-        profiles: file(table, &profiles, total, of_profiles),
-        grains: file(table, &grains, total, |_| {}),
-        contacts: file(table, &contacts, total, |_| {}),
-        layer,
-    })
+    let files = EnumMap::from_fn(|kind| {
+        let (file, of_profiles) = file(table, kind, total, rough)?;
+        if kind == FileKind::Profiles {
+            layer = of_profiles.quantity_or("layer", &LENGTH, Range::Positive, diameter);
+        }
+        Some(file)
+    });
+    Some(Output { files, layer })
 }
 
-/// Without what is always zero: the friction of frictionless walls.
-fn series_names_for(rough: [bool; 2]) -> Vec<&'static str> {
-    let mut names = series_names();
+/// Rows over the whole protocol unless the scene says otherwise, and an example of an interval.
+fn rows(kind: FileKind) -> (f64, &'static str) {
+    match kind {
+        FileKind::Series => (1000.0, "1 ms"),
+        FileKind::Profiles => (100.0, "10 ms"),
+        FileKind::Grains => (20.0, "50 ms"),
+        FileKind::Contacts => (20.0, "0.1 s"),
+    }
+}
+
+/// The variables of a file unless the scene says otherwise: all, without what is always zero, the
+/// friction of frictionless walls.
+fn variables(kind: FileKind, rough: [bool; 2]) -> Vec<&'static str> {
+    let mut names = catalogue::names(kind);
     for (wall, rough) in ["top", "bottom"].into_iter().zip(rough) {
         let start = format!("wall_shear_stress_{wall}");
         names.retain(|name| rough || !name.starts_with(&start));
     }
     names
-}
-
-fn series_names() -> Vec<&'static str> {
-    let all = crate::output::catalogue::series();
-    all.map(|series| series.variable().name).collect()
-}
-
-fn names(fields: &[dem::output::Field]) -> Vec<&'static str> {
-    fields.iter().map(|field| field.variable.name).collect()
 }
 
 /// About how long a phase lasts [s]; a tenth of `max_duration` where a criterion ends it.
@@ -209,42 +159,46 @@ fn expected(phase: &Phase) -> f64 {
     if expected.is_finite() { expected } else { 10.0 }
 }
 
-/// The file `default.key`; `more` reads what only this one has.
-fn file(outer: &Table, default: &Default, total: f64, more: impl FnOnce(&Table)) -> Option<File> {
-    let key = default.key;
-    if !outer.has(key) && default.rows.is_none() {
+/// The file of a kind, and its table for what else it may say.
+fn file<'a>(
+    outer: &Table<'a>,
+    kind: FileKind,
+    total: f64,
+    rough: [bool; 2],
+) -> Option<(File, Table<'a>)> {
+    let key = kind.key();
+    let (rows, interval) = rows(kind);
+    // Contacts fill the disk: they are written only if asked for.
+    if kind == FileKind::Contacts && !outer.has(key) {
         outer.choose(key, "none");
-    }
-    if outer.is_word(key, "none") || !outer.has(key) && default.rows.is_none() {
         return None;
     }
-    let table = outer.table_or_empty(key, &format!("{}, or \"none\"", default.example))?;
-    let rows = default.rows.unwrap_or(20.0);
+    if outer.is_word(key, "none") {
+        return None;
+    }
+    let example = format!("{key} = {{ every = {interval:?} }}, or \"none\"");
+    let table = outer.table_or_empty(key, &example)?;
     let every = table.quantity_or("every", &TIME, Range::Positive, round(total / rows));
-    more(&table);
-    let example = format!(
-        "variables = {:?}",
-        &default.known[..default.known.len().min(2)]
-    );
-    let variables = table.texts("variables", &example);
-    for name in variables.iter().flatten() {
-        if !default.known.contains(name) {
-            let known = default.known.join(", ");
-            table.wrong(
-                "variables",
-                format!("{name:?} is not known; there are: {known}"),
-            );
+    let known = catalogue::names(kind);
+    let example = format!("variables = {:?}", &known[..known.len().min(2)]);
+    let stated = table.texts("variables", &example);
+    for name in stated.iter().flatten() {
+        if !known.contains(name) {
+            let known = known.join(", ");
+            let message = format!("{name:?} is not known; there are: {known}");
+            table.wrong("variables", message);
         }
     }
-    let variables = variables.unwrap_or_else(|| {
-        let all = toml_edit::Array::from_iter(default.variables.iter().copied());
-        table.choose("variables", all);
-        default.variables.clone()
+    let variables = stated.unwrap_or_else(|| {
+        let all = variables(kind, rough);
+        table.choose(
+            "variables",
+            toml_edit::Array::from_iter(all.iter().copied()),
+        );
+        all
     });
-    Some(File {
-        every,
-        variables: variables.into_iter().map(Into::into).collect(),
-    })
+    let variables = variables.into_iter().map(Into::into).collect();
+    Some((File { every, variables }, table))
 }
 
 /// The next of 1, 2, 5 times a power of ten below `x`.
