@@ -3,11 +3,12 @@
 use crate::scene::{Motion, Phase, Scene, Shear};
 use crate::start::highest;
 use anyhow::{Result, ensure};
-use dem::{Constraint, Drive, Horizontal, Model, State, Surface, Wall, WallMotion, WallState};
+use dem::{
+    Constraint, Drive, Grains, Horizontal, Model, State, Surface, Wall, WallMotion, WallState,
+    measure,
+};
 use glam::DVec3;
 
-/// Index of the bottom wall in [`Model::walls`].
-pub const BOTTOM: usize = 0;
 /// Index of the top wall in [`Model::walls`].
 pub const TOP: usize = 1;
 
@@ -65,21 +66,24 @@ impl Past {
 
 /// The model of `phase` on a bed of `height` [m].
 pub fn model(scene: &Scene, phase: &Phase, height: f64) -> Model {
-    let drive = phase.shear.map(|shear| match shear {
-        Shear::StrainRate(rate) => Drive::Velocity(rate * height),
-        Shear::Velocity(velocity) => Drive::Velocity(velocity),
-        Shear::Stress(stress) => Drive::ShearStress(stress),
-    });
     Model {
         domain: scene.domain,
         gravity: phase.gravity,
         law: phase.law,
         walls: walls(scene, phase),
-        drive,
+        drive: drive(phase, height),
         step: scene.step,
         skin: scene.skin,
         ledger: scene.output.needs_ledger(),
     }
+}
+
+fn drive(phase: &Phase, height: f64) -> Option<Drive> {
+    phase.shear.map(|shear| match shear {
+        Shear::StrainRate(rate) => Drive::Velocity(rate * height),
+        Shear::Velocity(velocity) => Drive::Velocity(velocity),
+        Shear::Stress(stress) => Drive::ShearStress(stress),
+    })
 }
 
 /// Bottom, top, and a pair of frictionless ones for each side that is not periodic.
@@ -104,15 +108,10 @@ fn walls(scene: &Scene, phase: &Phase) -> Vec<Wall> {
     walls
 }
 
-/// Height of the top wall above the bottom wall [m].
-pub fn wall_height(state: &State) -> f64 {
-    -state.walls[TOP].offset - state.walls[BOTTOM].offset
-}
-
-/// Height of the bed [m]: to the top wall, or to the highest grain where the wall is
-/// higher.
-pub fn bed_height(state: &State) -> f64 {
-    wall_height(state).min(highest(&state.grains) - state.walls[BOTTOM].offset)
+/// Height of the bed at the start [m].
+pub fn start_height(scene: &Scene) -> f64 {
+    let model = model(scene, &scene.phases[0], 1.0);
+    measure::bed_height(&model, &scene.start)
 }
 
 /// Height that the bed will have once it carries a load [m], as far as it can be guessed: that of
@@ -120,7 +119,7 @@ pub fn bed_height(state: &State) -> f64 {
 pub fn expected_height(scene: &Scene) -> f64 {
     let start = &scene.start;
     if !start.contacts.is_empty() {
-        return bed_height(start);
+        return start_height(scene);
     }
     let grains = &start.grains;
     let volume: f64 = (0..grains.len()).map(|k| grains.volume(k)).sum();
@@ -151,16 +150,19 @@ pub fn prepare(
     if !goes_on && matches!(phase.top, WallMotion::Stress(_)) {
         lower_wall(&mut state);
     }
-    let height = reference.map_or_else(|| bed_height(&state), |reference| reference.height);
-    choose_layers(phase, &mut state, height)?;
-    let model = model(scene, phase, height);
+    // The drive follows once the height is known.
+    let mut model = model(scene, phase, 1.0);
+    let [floor, top] = measure::bed_span(&model, &state);
+    let height = reference.map_or(top - floor, |reference| reference.height);
+    model.drive = drive(phase, height);
+    choose_layers(phase, &mut state, floor, height)?;
     match phase.start {
         Motion::Keep => {}
         Motion::Rest => stop(&mut state),
         Motion::Profile => {
             stop(&mut state);
             if let Some(Drive::Velocity(velocity)) = model.drive {
-                set_profile(&mut state, velocity, height, phase.layer);
+                set_profile(&mut state.grains, velocity, floor, height, phase.layer);
             }
         }
     }
@@ -183,8 +185,7 @@ fn lower_wall(state: &mut State) {
     }
 }
 
-fn choose_layers(phase: &Phase, state: &mut State, height: f64) -> Result<()> {
-    let floor = state.walls[BOTTOM].offset;
+fn choose_layers(phase: &Phase, state: &mut State, floor: f64, height: f64) -> Result<()> {
     let grains = &mut state.grains;
     let is = |horizontal| move |c: &Constraint| c.horizontal == horizontal;
     if phase.shear.is_none() {
@@ -235,9 +236,7 @@ fn stop(state: &mut State) {
 
 /// Velocities along x from zero at the top of the held layer to `velocity` at the bottom
 /// of the driven one.
-fn set_profile(state: &mut State, velocity: f64, height: f64, layer: f64) {
-    let floor = state.walls[BOTTOM].offset;
-    let grains = &mut state.grains;
+fn set_profile(grains: &mut Grains, velocity: f64, floor: f64, height: f64, layer: f64) {
     for (v, position) in grains.velocity.iter_mut().zip(&grains.position) {
         let share = (position.z - floor - layer) / (height - 2.0 * layer);
         v.x = velocity * share.clamp(0.0, 1.0);

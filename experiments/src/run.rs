@@ -15,7 +15,7 @@ use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
 use crate::scene::{self, Phase, Scene};
 use anyhow::{Context, Error, Result, bail, ensure};
 use bed::Bed;
-use dem::{Drive, Model, Solver, State, Sums};
+use dem::{Drive, Model, Solver, State, Sums, measure};
 use intervals::Intervals;
 use pace::Pace;
 use progress::Progress;
@@ -244,7 +244,7 @@ impl Run<'_> {
                 continue;
             }
             let now = Arc::new(solver.snapshot());
-            let room = protocol::wall_height(&now.state);
+            let room = measure::wall_height(&model, &now.state, protocol::TOP);
             ensure!(
                 room > now.state.grains.mean_radius(),
                 "phase {}: the top wall stands at {room:.4e} m, less than a grain above the \

@@ -3,7 +3,7 @@
 use super::{SMALL, read};
 use dem::{Horizontal, State};
 use experiments::output::{FileKind, state};
-use experiments::protocol::{bed_height, prepare, wall_height};
+use experiments::protocol::{TOP, prepare, start_height};
 use experiments::run::{Options, Outcome, Summary, run};
 use experiments::scene::Scene;
 use std::path::{Path, PathBuf};
@@ -65,12 +65,16 @@ fn going_on_from_a_state_gives_the_bits_of_not_having_stopped() {
 #[test]
 fn a_pushed_wall_begins_on_the_highest_grain() {
     let scene = read(SMALL, &["box.size=[\"6 mm\", \"6 mm\", \"1 m\"]"]).unwrap();
+    let wall_height = |state: &State| -state.walls[TOP].offset;
     assert_eq!(wall_height(&scene.start), 1.0);
     let held = prepare(&scene, &scene.phases[0], scene.start.clone(), None).unwrap();
     assert_eq!(wall_height(&held.state), 1.0);
     assert!(held.height < 0.1);
     let pushed = prepare(&scene, &scene.phases[1], scene.start.clone(), None).unwrap();
-    assert_eq!(wall_height(&pushed.state), bed_height(&scene.start));
+    let grains = &scene.start.grains;
+    let tops = grains.position.iter().zip(&grains.radius);
+    let highest = tops.map(|(p, r)| p.z + r).fold(0.0, f64::max);
+    assert_eq!(wall_height(&pushed.state), highest);
 }
 
 #[test]
@@ -82,8 +86,10 @@ fn shear_holds_the_lowest_layer_and_starts_from_a_linear_profile() {
     let ready = prepare(&scene, &scene.phases[2], state.clone(), None).unwrap();
     let (grains, layer) = (&ready.state.grains, 0.6e-3);
     let top = 5.0 * ready.height;
+    let lowest = grains.position.iter().zip(&grains.radius);
+    let floor = lowest.map(|(p, r)| p.z - r).fold(f64::INFINITY, f64::min);
     for k in 0..grains.len() {
-        let (z, v) = (grains.position[k].z, grains.velocity[k]);
+        let (z, v) = (grains.position[k].z - floor, grains.velocity[k]);
         let constraint = grains.constraint[k];
         let (horizontal, speed) = if z < layer {
             (Horizontal::Held, 0.0)
@@ -120,7 +126,7 @@ fn shear_holds_the_lowest_layer_and_starts_from_a_linear_profile() {
 #[test]
 fn layers_that_leave_nothing_between_them_are_refused() {
     let mut scene = read(SMALL, &[]).unwrap();
-    scene.phases[2].layer = 0.6 * bed_height(&scene.start);
+    scene.phases[2].layer = 0.6 * start_height(&scene);
     let error = prepare(&scene, &scene.phases[2], scene.start.clone(), None).unwrap_err();
     assert!(
         error.to_string().contains("write a smaller layer"),
@@ -226,7 +232,7 @@ fn a_run_that_is_refused_leaves_old_results() {
         quiet: true,
     };
     let never = AtomicBool::new(false);
-    scene.phases[0].layer = bed_height(&scene.start);
+    scene.phases[0].layer = start_height(&scene);
     let all = || {
         let entries = std::fs::read_dir(folder.path()).unwrap();
         let paths = entries.map(|entry| entry.unwrap().path());

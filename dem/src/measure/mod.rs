@@ -53,6 +53,12 @@ pub fn bed_span(model: &Model, state: &State) -> [f64; 2] {
     [low, high]
 }
 
+/// Height of the bed [m], between the two of [`bed_span`].
+pub fn bed_height(model: &Model, state: &State) -> f64 {
+    let [low, high] = bed_span(model, state);
+    high - low
+}
+
 /// Solid fraction between the heights `low` and `high` [m] over `area` [m²], from the
 /// exact volumes of spheres between two planes.
 ///
@@ -133,8 +139,7 @@ pub fn strain_rate(model: &Model, now: &Snapshot) -> f64 {
     if !grains.constraint.iter().any(|c| c.horizontal == Driven) {
         return 0.0;
     }
-    let [low, high] = bed_span(model, &now.state);
-    (mean_velocity(Driven) - mean_velocity(Held)) / (high - low)
+    (mean_velocity(Driven) - mean_velocity(Held)) / bed_height(model, &now.state)
 }
 
 #[cfg(test)]

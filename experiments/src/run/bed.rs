@@ -5,7 +5,7 @@ use super::summary::{Outcome, PhaseSummary};
 use crate::output::{FileKind, Frame};
 use crate::protocol::{self, Reference};
 use crate::scene::Phase;
-use dem::{Model, Snapshot, Sums};
+use dem::{Model, Snapshot, Sums, measure};
 use std::sync::Arc;
 
 /// What a phase measures against: the bed at its start, and the last reading.
@@ -37,7 +37,7 @@ impl Bed {
             before: self.before.clone(),
             phase: self.number as u32,
             strain: self.strain(now),
-            dilation: protocol::bed_height(&now.state) / self.reference.height - 1.0,
+            dilation: measure::bed_height(model, &now.state) / self.reference.height - 1.0,
             due,
         }
     }
@@ -75,8 +75,8 @@ impl Bed {
             outcome,
             steps,
             duration: steps as f64 * model.step,
-            height: protocol::bed_height(&now.state),
-            solid_fraction: dem::measure::solid_fraction(model, &now.state),
+            height: measure::bed_height(model, &now.state),
+            solid_fraction: measure::solid_fraction(model, &now.state),
             shear,
         }
     }

@@ -148,14 +148,6 @@ fn read(reader: &Reader) -> Option<Scene> {
         .place(grains, &bounds.domain, bounds.height, seed)
         .map_err(|message| reader.wrong(&["box", "size"], message))
         .ok()?;
-    if bounds.height.is_none() && !matches!(origin, Source::State(_)) {
-        let third = [
-            Step::Key("box".into()),
-            Step::Key("size".into()),
-            Step::Item(2),
-        ];
-        reader.choose(&third, units::LENGTH.write(protocol::wall_height(&start)));
-    }
     let mut scene = Scene {
         title: title.unwrap_or_default().into(),
         question: question.map(Into::into),
@@ -172,6 +164,15 @@ fn read(reader: &Reader) -> Option<Scene> {
         output,
         text: String::new(), // until all is chosen
     };
+    if bounds.height.is_none() && !matches!(origin, Source::State(_)) {
+        let third = [
+            Step::Key("box".into()),
+            Step::Key("size".into()),
+            Step::Item(2),
+        ];
+        let height = -scene.start.walls[protocol::TOP].offset;
+        reader.choose(&third, units::LENGTH.write(height));
+    }
     time::settle(&mut scene, time.step)
         .map_err(|message| reader.wrong(&["time", "step"], message))
         .ok()?;

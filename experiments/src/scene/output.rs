@@ -78,7 +78,7 @@ impl Scene {
         // A bed that comes settled from a file may be higher than its own volume says.
         let height = match self.start.contacts.is_empty() {
             true => settled,
-            false => protocol::bed_height(&self.start).max(settled),
+            false => protocol::start_height(self).max(settled),
         };
         let count = (height / layer).ceil().max(1.0) as usize;
         if count > MOST_LAYERS {
