@@ -2,9 +2,10 @@
 
 use super::Length;
 use super::packing::{HEIGHT, Packing};
+use super::poster::Poster;
 use super::report::Sample;
 use anyhow::Result;
-use dem::contact::{Linear, Sliding, Tension};
+use dem::contact::Linear;
 use dem::{
     Body, Constraint, ContactLaw, Domain, Drive, Grains, Horizontal, Model, Solver, State, Surface,
     Wall, WallMotion, WallState,
@@ -12,12 +13,6 @@ use dem::{
 use glam::DVec3;
 use std::time::Instant;
 
-/// Time step of the poster (s).
-pub const STEP: f64 = 6.6e-7;
-/// Strain rate of the poster (1/s).
-pub const STRAIN_RATE: f64 = 0.25;
-/// Density of the grains (kg/m³).
-pub const DENSITY: f64 = 3600.0;
 /// Grains whose centres are nearer to a plane belong to its held or driven layer (m).
 pub const LAYER: f64 = 0.013;
 
@@ -46,8 +41,15 @@ impl Case {
     }
 
     /// Shear `packing` from the start for one measurement.
-    pub fn run(self, packing: &Packing, threads: usize, length: Length) -> Result<Sample> {
-        let mut solver = Solver::new(self.model(packing), start(packing), threads)?;
+    pub fn run(
+        self,
+        poster: &Poster,
+        packing: &Packing,
+        threads: usize,
+        length: Length,
+    ) -> Result<Sample> {
+        let (model, start) = (self.model(poster, packing), start(poster, packing));
+        let mut solver = Solver::new(model, start, threads)?;
         solver.advance(length.warm_up)?;
         let clock = Instant::now();
         solver.advance(length.steps)?;
@@ -66,13 +68,7 @@ impl Case {
         })
     }
 
-    fn model(self, packing: &Packing) -> Model {
-        let friction = Sliding {
-            stiffness: 1e8,
-            damping: 780.0,
-            friction_static: 0.58,
-            friction_dynamic: 0.47,
-        };
+    fn model(self, poster: &Poster, packing: &Packing) -> Model {
         let plane = |name: &str, normal| Wall {
             name: name.into(),
             normal,
@@ -86,16 +82,12 @@ impl Case {
             },
             gravity: DVec3::ZERO,
             law: ContactLaw::Linear(Linear {
-                normal_stiffness: 1e9,
-                normal_damping: 780.0,
-                tension: Tension::Clip,
-                sliding: (self != Self::Frictionless).then_some(friction),
-                rolling: None,
-                twisting: None,
+                sliding: (self != Self::Frictionless).then_some(poster.sliding),
+                ..poster.law
             }),
             walls: vec![plane("bottom", DVec3::Z), plane("top", DVec3::NEG_Z)],
-            drive: Some(Drive::Velocity(STRAIN_RATE * HEIGHT)),
-            step: STEP,
+            drive: Some(Drive::Velocity(poster.strain_rate * HEIGHT)),
+            step: poster.step,
             skin: None,
             ledger: self == Self::Poster,
         }
@@ -103,16 +95,16 @@ impl Case {
 }
 
 /// The packing with a linear velocity profile between a held and a driven layer.
-fn start(packing: &Packing) -> State {
+fn start(poster: &Poster, packing: &Packing) -> State {
     let mut grains = Grains::default();
     for (&position, &radius) in packing.position.iter().zip(&packing.radius) {
-        let k = grains.add_sphere(position, radius, DENSITY) as usize;
+        let k = grains.add_sphere(position, radius, poster.density) as usize;
         let (horizontal, speed) = if position.z < LAYER {
             (Horizontal::Held, 0.0)
         } else if position.z > HEIGHT - LAYER {
-            (Horizontal::Driven, STRAIN_RATE * HEIGHT)
+            (Horizontal::Driven, poster.strain_rate * HEIGHT)
         } else {
-            (Horizontal::Free, STRAIN_RATE * position.z)
+            (Horizontal::Free, poster.strain_rate * position.z)
         };
         grains.velocity[k] = DVec3::X * speed;
         grains.constraint[k] = Constraint {

@@ -1,8 +1,9 @@
 //! The same bed, sheared in the same way by LAMMPS.
 
 use super::Length;
-use super::case::{DENSITY, LAYER, STEP, STRAIN_RATE};
+use super::case::LAYER;
 use super::packing::{HEIGHT, Packing};
+use super::poster::Poster;
 use super::report::Sample;
 use anyhow::{Context, Result, ensure};
 use std::fmt::Write as _;
@@ -24,6 +25,7 @@ enum Style {
 
 /// One law of LAMMPS on one packing, with the skin that is best for both.
 pub struct Lammps {
+    poster: Poster,
     style: Style,
     ranks: usize,
     grains: usize,
@@ -55,11 +57,20 @@ pub fn check_installed(parallel: bool) -> Result<()> {
 
 impl Lammps {
     /// Both laws on `packing`, each with the best of a few skins.
-    pub fn all(packing: &Packing, ranks: usize, length: Length) -> Result<Vec<Self>> {
+    pub fn all(
+        poster: &Poster,
+        packing: &Packing,
+        ranks: usize,
+        length: Length,
+    ) -> Result<Vec<Self>> {
         let tuned = [Style::HookeHistory, Style::Granular].map(|style| {
             let folder = TempDir::with_prefix("esker-bench-")?;
-            std::fs::write(folder.path().join("bed.data"), data(packing)?)?;
+            std::fs::write(
+                folder.path().join("bed.data"),
+                data(packing, poster.density)?,
+            )?;
             let mut peer = Self {
+                poster: *poster,
                 style,
                 ranks,
                 grains: packing.len(),
@@ -123,28 +134,40 @@ impl Lammps {
 
     /// The script: planes held, layers held and driven, linear profile, as in `case.rs`.
     fn input(&self, length: Length) -> Result<String> {
+        let Poster {
+            law,
+            sliding,
+            step,
+            strain_rate,
+            density,
+        } = self.poster;
+        let (k_n, damping_n) = (law.normal_stiffness, law.normal_damping);
+        let (k_t, damping_t, mu) = (sliding.stiffness, sliding.damping, sliding.friction_static);
         let law = match self.style {
             Style::HookeHistory => {
                 // Its damping is a rate, times the effective mass: m/2 of two mean grains, m at
                 // a plane. Its friction has one coefficient.
-                let mass = DENSITY * 4.0 / 3.0 * std::f64::consts::PI * 0.01_f64.powi(3);
-                let (pair, wall) = (780.0 / (0.5 * mass), 780.0 / mass);
+                let mass = density * 4.0 / 3.0 * std::f64::consts::PI * 0.01_f64.powi(3);
+                let [pair_n, pair_t] = [damping_n, damping_t].map(|c| c / (0.5 * mass));
+                let wall = damping_n / mass;
                 format!(
-                    "pair_style gran/hooke/history 1e9 1e8 {pair} {pair} 0.58 1\n\
+                    "pair_style gran/hooke/history {k_n:e} {k_t:e} {pair_n} {pair_t} {mu} 1\n\
                      pair_coeff * *\n\
-                     fix wall all wall/gran hooke/history 1e9 0.0 {wall} 0.0 0.0 0 \
+                     fix wall all wall/gran hooke/history {k_n:e} 0.0 {wall} 0.0 0.0 0 \
                      zplane 0.0 {HEIGHT}\n"
                 )
             }
             Style::Granular => format!(
                 "pair_style granular\n\
-                 pair_coeff * * hooke 1e9 780 damping velocity \
-                 tangential linear_history 1e8 1.0 0.58\n\
-                 fix wall all wall/gran granular hooke 1e9 780 damping velocity \
-                 tangential linear_nohistory 0.0 0.0 zplane 0.0 {HEIGHT}\n"
+                 pair_coeff * * hooke {k_n:e} {damping_n} damping velocity \
+                 tangential linear_history {k_t:e} {ratio} {mu}\n\
+                 fix wall all wall/gran granular hooke {k_n:e} {damping_n} damping velocity \
+                 tangential linear_nohistory 0.0 0.0 zplane 0.0 {HEIGHT}\n",
+                // It wants the tangential dashpot in units of the normal one.
+                ratio = damping_t / damping_n
             ),
         };
-        let (skin, speed) = (self.skin, STRAIN_RATE * HEIGHT);
+        let (skin, speed) = (self.skin, strain_rate * HEIGHT);
         let Length { warm_up, steps } = length;
         let mut text = String::new();
         write!(
@@ -171,7 +194,7 @@ impl Lammps {
              velocity bottom set 0 0 NULL\n\
              compute contacts all contact/atom\n\
              compute mean all reduce ave c_contacts\n\
-             timestep {STEP}\n\
+             timestep {step}\n\
              thermo 1000000\n\
              run {warm_up}\n\
              run {steps}\n\
@@ -185,7 +208,7 @@ impl Lammps {
 }
 
 /// The packing as a data file.
-fn data(packing: &Packing) -> Result<String> {
+fn data(packing: &Packing, density: f64) -> Result<String> {
     let [lx, ly] = packing.size;
     let mut text = String::new();
     write!(
@@ -197,7 +220,7 @@ fn data(packing: &Packing) -> Result<String> {
     )?;
     for (k, (p, radius)) in packing.position.iter().zip(&packing.radius).enumerate() {
         let (id, diameter) = (k + 1, 2.0 * radius);
-        writeln!(text, "{id} 1 {diameter} {DENSITY} {} {} {}", p.x, p.y, p.z)?;
+        writeln!(text, "{id} 1 {diameter} {density} {} {} {}", p.x, p.y, p.z)?;
     }
     Ok(text)
 }

@@ -6,12 +6,14 @@
 mod case;
 mod lammps;
 mod packing;
+mod poster;
 mod report;
 
 use anyhow::{Context, Result, ensure};
 use case::Case;
 use lammps::Lammps;
 use packing::Packing;
+use poster::Poster;
 use report::{Row, Sample};
 use std::path::PathBuf;
 
@@ -58,11 +60,12 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
         lammps::check_installed(threads.iter().any(|&t| t > 1))?;
     }
 
+    let poster = Poster::read()?;
     let mut rows = Vec::new();
     for &grains in &args.grains {
         let packing = Packing::of(grains);
         for &threads in &threads {
-            let new = measure(&packing, threads, args)?;
+            let new = measure(&poster, &packing, threads, args)?;
             report::print(&new, args.rounds);
             rows.extend(new);
         }
@@ -79,10 +82,15 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
 }
 
 /// All cases on one packing and one number of threads, alternating.
-fn measure(packing: &Packing, threads: usize, args: &SpeedArgs) -> Result<Vec<Row>> {
+fn measure(
+    poster: &Poster,
+    packing: &Packing,
+    threads: usize,
+    args: &SpeedArgs,
+) -> Result<Vec<Row>> {
     let length = Length::of(packing.len(), threads);
     let lammps = if args.with_lammps {
-        Lammps::all(packing, threads, length)?
+        Lammps::all(poster, packing, threads, length)?
     } else {
         Vec::new()
     };
@@ -90,7 +98,7 @@ fn measure(packing: &Packing, threads: usize, args: &SpeedArgs) -> Result<Vec<Ro
     let mut peers: Vec<_> = lammps.iter().map(|peer| (peer, Vec::new())).collect();
     for _ in 0..args.rounds {
         for (case, samples) in &mut own {
-            samples.push(case.run(packing, threads, length)?);
+            samples.push(case.run(poster, packing, threads, length)?);
         }
         for (peer, samples) in &mut peers {
             samples.push(peer.run(length)?);
@@ -100,10 +108,10 @@ fn measure(packing: &Packing, threads: usize, args: &SpeedArgs) -> Result<Vec<Ro
     let row = |case: &str, backend, samples: &[Sample]| {
         Row::new(case, backend, packing, threads, samples)
     };
-    let poster = &own[0].1;
+    let of_poster = &own[0].1;
     let mut rows: Vec<Row> = own.iter().map(|(c, s)| row(c.name(), "cpu", s)).collect();
     rows.extend(peers.iter().map(|(peer, samples)| Row {
-        poster_ratio: Some(report::ratio(poster, samples)),
+        poster_ratio: Some(report::ratio(of_poster, samples)),
         ..row(&peer.name(), "lammps", samples)
     }));
     Ok(rows)
