@@ -3,18 +3,21 @@
 //! All tests look at one bed: 180 grains without gravity, pressed by 10 kPa between two
 //! walls and sheared between a held and a driven layer.
 
+mod writer;
+
 use approx::assert_relative_eq;
 use dem::contact::{Linear, Sliding, Tension};
 use dem::measure::{bed_span, profile};
 use dem::{
-    Body, ContactLaw, Domain, Drive, Horizontal, Model, Solver, State, StressLoad, Sums, Surface,
-    Wall, WallMotion, WallState,
+    Body, Domain, Drive, Grains, Horizontal, Model, Solver, State, StressLoad, Sums, Surface, Wall,
+    WallMotion, WallState,
 };
 use enum_map::EnumMap;
 use experiments::output::{Frame, Header, Plan, Writer, catalogue, state};
 use experiments::protocol::Past;
 use glam::DVec3;
 use std::sync::Arc;
+use tests::{floor, smooth};
 
 const PLACES: [usize; 3] = [5, 6, 6];
 const RADIUS: f64 = 0.01;
@@ -30,39 +33,31 @@ fn model() -> Model {
         mass: 0.1,
         damping: 50.0,
     };
-    let wall = |name: &str, normal, motion| Wall {
-        name: name.into(),
-        normal,
-        surface: Surface::Frictionless,
-        motion,
+    let law = Linear {
+        sliding: Some(Sliding {
+            stiffness: 3e4,
+            damping: 0.0,
+            friction_static: 0.5,
+            friction_dynamic: 0.4,
+        }),
+        ..smooth(1e5, 10.0, Tension::Clip)
+    };
+    let bottom = floor(Surface::Frictionless);
+    let top = Wall {
+        name: "top".into(),
+        normal: DVec3::NEG_Z,
+        motion: WallMotion::Stress(load),
+        ..bottom.clone()
     };
     Model {
         domain: Domain {
             size,
             periodic: [true, true],
         },
-        gravity: DVec3::ZERO,
-        law: ContactLaw::Linear(Linear {
-            normal_stiffness: 1e5,
-            normal_damping: 10.0,
-            tension: Tension::Clip,
-            sliding: Some(Sliding {
-                stiffness: 3e4,
-                damping: 0.0,
-                friction_static: 0.5,
-                friction_dynamic: 0.4,
-            }),
-            rolling: None,
-            twisting: None,
-        }),
-        walls: vec![
-            wall("bottom", DVec3::Z, WallMotion::Held),
-            wall("top", DVec3::NEG_Z, WallMotion::Stress(load)),
-        ],
+        walls: vec![bottom, top],
         drive: Some(Drive::Velocity(0.05)),
         step: 2e-5,
-        skin: None,
-        ledger: true,
+        ..tests::model(law, &Grains::default())
     }
 }
 
