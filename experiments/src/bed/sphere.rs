@@ -13,8 +13,12 @@
 //! f64 x n x 3 angle                    f64 x n x 3 angular velocity
 //! ```
 //!
-//! What follows (torques, energies, laws, walls, bonds, fluid) is not part of a bed. The
-//! layout was worked out from a file and from descriptions of it.
+//! What follows (torques, energies, laws, walls, bonds, fluid) is not part of a bed.
+//!
+//! Source: worked out from descriptions and from a file of the program's public repository,
+//! `output/init-1e4.output00199.bin` in github.com/klkkong/sphere, a fork of anders-dc/sphere;
+//! read in this way it gives 10 000 grains with radii of 9.66 to 10.38 mm, none of which overlap
+//! by more than a part in 2000. None of sphere's code, which is GPL-3, is here.
 
 use super::Bed;
 use anyhow::{Context, Result, ensure};

@@ -33,7 +33,8 @@ pub struct PhaseSummary {
     pub height: f64,
     /// Solid fraction of the inside of the bed at its end, as in `series.nc` [-].
     pub solid_fraction: f64,
-    /// Shear strain of the phase, and shear over normal stress at the top in its last fifth.
+    /// Shear strain of the phase, and shear over normal stress at the top, the mean over the last
+    /// fifth of its time.
     pub shear: Option<(f64, f64)>,
 }
 
@@ -52,9 +53,9 @@ impl fmt::Display for PhaseSummary {
             self.name, self.duration, self.height, self.solid_fraction
         )?;
         if let Some((strain, friction)) = self.shear {
-            write!(f, ", strain {strain:.4}, friction ")?;
+            write!(f, ", strain {strain:.4}, shear over normal stress ")?;
             match friction.is_finite() {
-                true => write!(f, "{friction:.3}")?,
+                true => write!(f, "{friction:.3} (mean of the last fifth)")?,
                 false => write!(f, "unknown: nothing pressed")?,
             }
         }

@@ -227,68 +227,47 @@ ITEM: ATOMS id type xu yu zu diameter vx vy vz omegax omegay omegaz
 
     #[test]
     fn what_is_wrong_is_told_with_its_line() {
-        let cases = [
+        let data = [
+            ("units = si", "units = cgs", "units cgs; convert"),
+            ("# sphere", "# atomic", "line 10: atoms of the style atomic"),
+            ("0.2 2500", "wide 2500", "line 12: \"wide\" is not a number"),
             (
-                DATA.replace("units = si", "units = cgs"),
-                "units cgs; convert",
-            ),
-            (
-                DATA.replace("# sphere", "# atomic"),
-                "line 10: atoms of the style atomic",
-            ),
-            (
-                DATA.replace("0.2 2500", "wide 2500"),
-                "line 12: \"wide\" is not a number",
-            ),
-            (
-                DATA.replace(" 4.5 2 3 0 1 0", " 4.5"),
+                " 4.5 2 3 0 1 0",
+                " 4.5",
                 "line 12: an atom of the style sphere has id",
             ),
             (
-                DATA.replace("Atoms", "0.1 0 0 xy xz yz\n\nAtoms"),
+                "Atoms",
+                "0.1 0 0 xy xz yz\n\nAtoms",
                 "line 10: the box is tilted by 0.1",
             ),
-            (DATA.replace("0 3 ylo yhi", ""), "no box"),
+            ("0 3 ylo yhi", "", "no box"),
             (
-                DATA.replace("1 1 0.1 2500 1.5 1 0 0 0 0\n", ""),
+                "1 1 0.1 2500 1.5 1 0 0 0 0\n",
+                "",
                 "1 of 2 atoms found, the last on line 12, where line 3 promises 2",
             ),
+            ("2 7 8 9 10 11 12\n", "", "grain 2 has no velocity"),
+            ("\n2 1 0.2", "\n1 1 0.2", "two grains have the id 1"),
+        ];
+        let dump = [
+            ("12.5", "east", "line 20: \"east\" is not a number"),
+            (" 12\n", "\n", "line 20: 11 numbers, 12 are named"),
+            ("diameter", "mass", "line 19: the dump lacks radius"),
+            ("1 1 1.5 1 -2 0.1 1 2 3 4 5 6\n", "", "ends within a frame"),
             (
-                DATA.replace("2 7 8 9 10 11 12\n", ""),
-                "grain 2 has no velocity",
-            ),
-            (
-                DATA.replace("\n2 1 0.2", "\n1 1 0.2"),
-                "two grains have the id 1",
-            ),
-            (
-                DUMP.replace("12.5", "east"),
-                "line 20: \"east\" is not a number",
-            ),
-            (
-                DUMP.replace(" 12\n", "\n"),
-                "line 20: 11 numbers, 12 are named",
-            ),
-            (
-                DUMP.replace("diameter", "mass"),
-                "line 19: the dump lacks radius",
-            ),
-            (
-                DUMP.replace("1 1 1.5 1 -2 0.1 1 2 3 4 5 6\n", ""),
-                "ends within a frame",
-            ),
-            (
-                DUMP.replace("ITEM: TIMESTEP\n0", "ITEM: UNITS\nreal"),
+                "ITEM: TIMESTEP\n0",
+                "ITEM: UNITS\nreal",
                 "units real; convert",
             ),
-            (
-                DUMP.replace("0 3\n", "0 3 0.1\n"),
-                "line 17: the box is tilted by 0.1",
-            ),
+            ("0 3\n", "0 3 0.1\n", "line 17: the box is tilted by 0.1"),
         ];
-        for (text, expected) in cases {
-            let error = refusal(&text);
-            assert!(error.contains(expected), "{expected}: {error}");
+        for (file, slips) in [(DATA, &data[..]), (DUMP, &dump[..])] {
+            for (right, wrong, expected) in slips {
+                assert!(file.contains(right), "{right}");
+                let error = refusal(&file.replace(right, wrong));
+                assert!(error.contains(expected), "{expected}: {error}");
+            }
         }
     }
 }
