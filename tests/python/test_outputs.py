@@ -1,5 +1,8 @@
 """Does xarray open what a run writes, and know its axes?"""
 
+import os
+import subprocess
+
 import numpy as np
 import pytest
 import xarray
@@ -118,6 +121,15 @@ def test_attributes_tell_where_the_file_comes_from(files, file):
     for name in ("title", "scene", "version", "commit", "seed", "machine"):
         assert name in attributes, name
     assert "[[phase]]" in attributes["scene"]
+
+
+def test_the_scene_in_a_file_is_a_scene(files, tmp_path):
+    scene = tmp_path / "scene.toml"
+    scene.write_text(files["series"].attrs["scene"])
+    command = [os.environ["ESKER"], "check", scene]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "phase shear" in done.stdout
 
 
 @pytest.mark.parametrize("file", FILES)
