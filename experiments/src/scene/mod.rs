@@ -181,7 +181,8 @@ fn read(reader: &Reader) -> Option<Scene> {
     // The first bed is there already.
     let first = &scene.phases[0];
     let reference = scene.past.reference_of(first);
-    if !reader.has_problems()
+    if first.shear.is_some()
+        && !reader.has_problems()
         && let Err(error) = protocol::prepare(&scene, first, scene.start.clone(), reference)
     {
         let layer = [
