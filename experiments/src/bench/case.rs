@@ -1,7 +1,8 @@
-//! The cases that esker runs: the packing under the poster's law, sheared between two layers.
+//! The cases that esker runs: a packing under the poster's law, or that of small-shear, sheared
+//! between two layers.
 
 use super::Length;
-use super::packing::{HEIGHT, Packing};
+use super::packing::{Packing, Sizes};
 use super::report::Sample;
 use anyhow::Result;
 use dem::contact::{Linear, Sliding, Tension};
@@ -12,14 +13,12 @@ use dem::{
 use glam::DVec3;
 use std::time::Instant;
 
-/// Time step of the poster (s).
+/// Time step of the poster (s); that of small-shear is ten times longer.
 pub const STEP: f64 = 6.6e-7;
 /// Strain rate of the poster (1/s).
 pub const STRAIN_RATE: f64 = 0.25;
 /// Density of the grains (kg/m³).
 pub const DENSITY: f64 = 3600.0;
-/// Grains whose centres are nearer to a plane belong to its held or driven layer (m).
-pub const LAYER: f64 = 0.013;
 
 /// What is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,11 +29,21 @@ pub enum Case {
     PosterNoLedger,
     /// Neither tangential forces nor ledger.
     Frictionless,
+    /// As in a run of small-shear, grains of one size.
+    OneSize,
+    /// As in a run of small-shear, radii 1:10.
+    LogNormal,
 }
 
 impl Case {
     /// In the order of a round.
-    pub const ALL: [Self; 3] = [Self::Poster, Self::PosterNoLedger, Self::Frictionless];
+    pub const ALL: [Self; 5] = [
+        Self::Poster,
+        Self::PosterNoLedger,
+        Self::Frictionless,
+        Self::OneSize,
+        Self::LogNormal,
+    ];
 
     /// Name in tables and files.
     pub fn name(self) -> &'static str {
@@ -42,6 +51,17 @@ impl Case {
             Self::Poster => "poster",
             Self::PosterNoLedger => "poster-no-ledger",
             Self::Frictionless => "frictionless",
+            Self::OneSize => "one-size",
+            Self::LogNormal => "log-normal",
+        }
+    }
+
+    /// The grains that it takes.
+    pub fn sizes(self) -> Sizes {
+        match self {
+            Self::Poster | Self::PosterNoLedger | Self::Frictionless => Sizes::Poster,
+            Self::OneSize => Sizes::One,
+            Self::LogNormal => Sizes::LogNormal,
         }
     }
 
@@ -67,9 +87,14 @@ impl Case {
     }
 
     fn model(self, packing: &Packing) -> Model {
+        // The poster's numbers, and those of small-shear: softer, with the same restitution.
+        let (stiffness, damping, step) = match self.sizes() {
+            Sizes::Poster => (1e9, 780.0, STEP),
+            Sizes::One | Sizes::LogNormal => (1e7, 78.0, 10.0 * STEP),
+        };
         let friction = Sliding {
-            stiffness: 1e8,
-            damping: 780.0,
+            stiffness: 0.1 * stiffness,
+            damping,
             friction_static: 0.58,
             friction_dynamic: 0.47,
         };
@@ -86,18 +111,18 @@ impl Case {
             },
             gravity: DVec3::ZERO,
             law: ContactLaw::Linear(Linear {
-                normal_stiffness: 1e9,
-                normal_damping: 780.0,
+                normal_stiffness: stiffness,
+                normal_damping: damping,
                 tension: Tension::Clip,
                 sliding: (self != Self::Frictionless).then_some(friction),
                 rolling: None,
                 twisting: None,
             }),
             walls: vec![plane("bottom", DVec3::Z), plane("top", DVec3::NEG_Z)],
-            drive: Some(Drive::Velocity(STRAIN_RATE * HEIGHT)),
-            step: STEP,
+            drive: Some(Drive::Velocity(STRAIN_RATE * packing.height)),
+            step,
             skin: None,
-            ledger: self == Self::Poster,
+            ledger: !matches!(self, Self::PosterNoLedger | Self::Frictionless),
         }
     }
 }
@@ -107,10 +132,10 @@ fn start(packing: &Packing) -> State {
     let mut grains = Grains::default();
     for (&position, &radius) in packing.position.iter().zip(&packing.radius) {
         let k = grains.add_sphere(position, radius, DENSITY) as usize;
-        let (horizontal, speed) = if position.z < LAYER {
+        let (horizontal, speed) = if position.z < packing.layer {
             (Horizontal::Held, 0.0)
-        } else if position.z > HEIGHT - LAYER {
-            (Horizontal::Driven, STRAIN_RATE * HEIGHT)
+        } else if position.z > packing.height - packing.layer {
+            (Horizontal::Driven, STRAIN_RATE * packing.height)
         } else {
             (Horizontal::Free, STRAIN_RATE * position.z)
         };
@@ -126,7 +151,7 @@ fn start(packing: &Packing) -> State {
     };
     State {
         grains,
-        walls: vec![plane(0.0), plane(-HEIGHT)],
+        walls: vec![plane(0.0), plane(-packing.height)],
         ..State::default()
     }
 }

@@ -1,8 +1,8 @@
 //! The same bed, sheared in the same way by LAMMPS.
 
 use super::Length;
-use super::case::{DENSITY, LAYER, STEP, STRAIN_RATE};
-use super::packing::{HEIGHT, Packing};
+use super::case::{DENSITY, STEP, STRAIN_RATE};
+use super::packing::Packing;
 use super::report::Sample;
 use anyhow::{Context, Result, ensure};
 use std::fmt::Write as _;
@@ -27,6 +27,8 @@ pub struct Lammps {
     style: Style,
     ranks: usize,
     grains: usize,
+    height: f64,
+    layer: f64,
     skin: f64,
     folder: TempDir,
 }
@@ -63,6 +65,8 @@ impl Lammps {
                 style,
                 ranks,
                 grains: packing.len(),
+                height: packing.height,
+                layer: packing.layer,
                 skin: SKINS[0],
                 folder,
             };
@@ -123,6 +127,7 @@ impl Lammps {
 
     /// The script: planes held, layers held and driven, linear profile, as in `case.rs`.
     fn input(&self, length: Length) -> Result<String> {
+        let (height, layer) = (self.height, self.layer);
         let law = match self.style {
             Style::HookeHistory => {
                 // Its damping is a rate, times the effective mass: m/2 of two mean grains, m at
@@ -133,7 +138,7 @@ impl Lammps {
                     "pair_style gran/hooke/history 1e9 1e8 {pair} {pair} 0.58 1\n\
                      pair_coeff * *\n\
                      fix wall all wall/gran hooke/history 1e9 0.0 {wall} 0.0 0.0 0 \
-                     zplane 0.0 {HEIGHT}\n"
+                     zplane 0.0 {height}\n"
                 )
             }
             Style::Granular => format!(
@@ -141,10 +146,10 @@ impl Lammps {
                  pair_coeff * * hooke 1e9 780 damping velocity \
                  tangential linear_history 1e8 1.0 0.58\n\
                  fix wall all wall/gran granular hooke 1e9 780 damping velocity \
-                 tangential linear_nohistory 0.0 0.0 zplane 0.0 {HEIGHT}\n"
+                 tangential linear_nohistory 0.0 0.0 zplane 0.0 {height}\n"
             ),
         };
-        let (skin, speed) = (self.skin, STRAIN_RATE * HEIGHT);
+        let (skin, speed) = (self.skin, STRAIN_RATE * height);
         let Length { warm_up, steps } = length;
         let mut text = String::new();
         write!(
@@ -159,14 +164,14 @@ impl Lammps {
              neighbor {skin} bin\n\
              neigh_modify delay 0 every 1 check yes\n\
              {law}\
-             region bottom block INF INF INF INF INF {LAYER}\n\
+             region bottom block INF INF INF INF INF {layer}\n\
              region top block INF INF INF INF {top} INF\n\
              group bottom region bottom\n\
              group top region top\n\
              fix motion all nve/sphere\n\
              fix held bottom setforce 0 0 NULL\n\
              fix driven top setforce 0 0 NULL\n\
-             velocity all ramp vx 0 {speed} z 0.0 {HEIGHT} units box\n\
+             velocity all ramp vx 0 {speed} z 0.0 {height} units box\n\
              velocity top set {speed} 0 NULL\n\
              velocity bottom set 0 0 NULL\n\
              compute contacts all contact/atom\n\
@@ -178,7 +183,7 @@ impl Lammps {
              thermo_style custom step c_mean\n\
              run 0\n\
              print \"coordination $(c_mean)\"\n",
-            top = HEIGHT - LAYER
+            top = height - layer
         )?;
         Ok(text)
     }
@@ -193,7 +198,7 @@ fn data(packing: &Packing) -> Result<String> {
         "a dense bed\n\n{} atoms\n1 atom types\n\n\
          0 {lx} xlo xhi\n0 {ly} ylo yhi\n-0.01 {zhi} zlo zhi\n\nAtoms\n\n",
         packing.len(),
-        zhi = HEIGHT + 0.01
+        zhi = packing.height + 0.01
     )?;
     for (k, (p, radius)) in packing.position.iter().zip(&packing.radius).enumerate() {
         let (id, diameter) = (k + 1, 2.0 * radius);
