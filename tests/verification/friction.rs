@@ -1,11 +1,14 @@
-//! The tangential spring, contact by contact: the arms that make the surfaces' velocity, and where
-//! the spring is left when a contact slides.
+//! Springs, contact by contact: the arms that make the surfaces' velocity, where the spring is left
+//! when a contact slides, the plane that it lies in.
 
 use approx::assert_relative_eq;
 use dem::contact::{Linear, Sliding, Tension};
-use dem::{Model, State, Surface};
+use dem::{ContactLaw, Model, State, Surface};
 use glam::DVec3;
-use tests::{MIDDLE, RADIUS, floor, friction, mass, resting, run, smooth, state, steps_to};
+use tests::bed::Bed;
+use tests::{
+    MIDDLE, RADIUS, floor, friction, mass, resting, run, smooth, solver, state, steps_to, turning,
+};
 
 /// Overlap of a deep contact [m].
 const OVERLAP: f64 = 0.1 * RADIUS;
@@ -85,4 +88,39 @@ fn spring_and_dashpot_of_a_sliding_contact_together_give_the_limit() {
     let spring = sliding.stiffness * contact.history.spring.x;
     // The dashpot sees a velocity half a step old.
     assert_relative_eq!(spring + dashpot, limit, max_relative = 1e-3);
+}
+
+/// Measuring the forces of the start is no step: a spring that is relaxed stays so.
+#[test]
+fn the_forces_of_the_start_advance_no_spring() {
+    let (model, mut start) = resting(sticky(), 0.0, 10.0);
+    start.grains.velocity[0] = 0.01 * DVec3::X;
+    let now = solver(&model, &start).snapshot();
+    let contact = &now.state.contacts[0];
+    assert!(contact.force.z > 0.0);
+    assert_eq!((contact.force.x, contact.force.y), (0.0, 0.0));
+    assert_eq!(contact.history.spring, DVec3::ZERO);
+}
+
+/// Springs are carried with the contact plane, however a dense shear turns it.
+#[test]
+fn springs_lie_in_the_plane_of_their_contact() {
+    let (mut model, start) = Bed::new(300, 6.0, 0.5, 3).sheared(0.05);
+    let ContactLaw::Linear(law) = &mut model.law else {
+        unreachable!("beds have the linear law")
+    };
+    law.rolling = turning(0.1 * law.normal_stiffness, 0.0, 0.2);
+    let end = run(&model, &start, steps_to(2.0, &model));
+    let mut seen = [0; 2];
+    for contact in &end.state.contacts {
+        let normal = contact.branch.normalize();
+        let history = contact.history;
+        let springs = [history.spring, history.rolling_spring];
+        for (seen, spring) in seen.iter_mut().zip(springs) {
+            *seen += u32::from(spring != DVec3::ZERO);
+            let out_of_plane = spring.dot(normal).abs();
+            assert!(out_of_plane <= 1e-12 * spring.length(), "{contact:?}");
+        }
+    }
+    assert!(seen.iter().all(|&n| n > 300), "{seen:?} springs");
 }
