@@ -155,16 +155,21 @@ fn no_impact_gains_energy_beyond_an_error_that_falls_with_the_step() {
 #[test]
 fn the_ledger_of_an_impact_closes_with_the_step() {
     for (name, law) in laws() {
-        let residual = |step: f64| {
-            let spin = DVec3::new(30.0, -60.0, 50.0);
-            let (start, end) = collide(law, step, 0.6, spin, 0.3 * step, false);
-            (end.ledger.residual / motion(&start)).abs()
-        };
-        let (coarse, fine) = (residual(6.6e-7), residual(6.6e-7 / 8.0));
-        println!("{name}: residual {coarse:.2e} at the poster's step, {fine:.2e} at an eighth");
-        assert!(
-            fine < 1e-12 || fine < coarse / 3.0,
-            "{name}: {coarse:e} falls to {fine:e} only"
-        );
+        for wall in [true, false] {
+            let residual = |step: f64| {
+                let spin = DVec3::new(30.0, -60.0, 50.0);
+                let (start, end) = collide(law, step, 0.6, spin, 0.3 * step, wall);
+                (end.ledger.residual / motion(&start)).abs()
+            };
+            let (coarse, fine) = (residual(6.6e-7), residual(6.6e-7 / 8.0));
+            let body = if wall { "wall" } else { "grain" };
+            println!(
+                "{name}, {body}: residual {coarse:.2e} at the poster's step, {fine:.2e} at 1/8"
+            );
+            assert!(
+                fine < 1e-12 || fine < coarse / 3.0,
+                "{name} on a {body}: {coarse:e} falls to {fine:e} only"
+            );
+        }
     }
 }

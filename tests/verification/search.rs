@@ -3,8 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use dem::contact::Tension;
-use dem::{Body, Domain, Model, Snapshot, State};
+use dem::contact::{Sliding, Tension};
+use dem::{Body, ContactLaw, Domain, Model, Snapshot, State};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -142,7 +142,13 @@ fn a_boulder_keeps_hundreds_of_contacts() {
 /// at nearly each step, follows that with a large one to round-off grown over a short run.
 #[test]
 fn history_survives_search_and_reordering() {
-    let (model, start) = Bed::new(300, 6.0, 0.5, 9).sheared(0.1);
+    let (mut model, start) = Bed::new(300, 6.0, 0.5, 9).sheared(0.1);
+    if let ContactLaw::Linear(law) = &mut model.law {
+        law.sliding = law.sliding.map(|sliding| Sliding {
+            friction_static: 0.7,
+            ..sliding
+        });
+    }
     let sheared = |skin: f64| {
         let mut solver = solver(
             &Model {
@@ -174,6 +180,13 @@ fn history_survives_search_and_reordering() {
         );
     }
     assert_eq!(grain_pairs(&often), grain_pairs(&seldom));
+    let sliding = |s: &Snapshot| {
+        let contacts = s.state.contacts.iter();
+        let sliding = contacts.filter(|c| c.history.sliding);
+        sliding.map(|c| (c.i, c.j)).collect::<Vec<_>>()
+    };
+    assert!(sliding(&often).len() > 30, "the flag is at stake");
+    assert_eq!(sliding(&often), sliding(&seldom));
 }
 
 #[test]

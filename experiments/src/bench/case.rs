@@ -1,8 +1,9 @@
-//! The cases that esker runs: the packing under the poster's law, sheared between two layers.
+//! The cases that esker runs: a packing under the poster's law, or that of small-shear, sheared
+//! between two layers.
 
 use super::Length;
-use super::packing::{HEIGHT, Packing};
-use super::poster::Poster;
+use super::numbers::Numbers;
+use super::packing::{Packing, Sizes};
 use super::report::Sample;
 use anyhow::Result;
 use dem::contact::Linear;
@@ -13,8 +14,30 @@ use dem::{
 use glam::DVec3;
 use std::time::Instant;
 
-/// Grains whose centres are nearer to a plane belong to its held or driven layer (m).
-pub const LAYER: f64 = 0.013;
+/// What is sheared.
+pub struct Bed {
+    /// The grains.
+    pub packing: Packing,
+    /// How they are sheared: as in the experiment that has such grains.
+    pub numbers: Numbers,
+}
+
+impl Bed {
+    /// `grains` grains of `sizes`.
+    ///
+    /// # Errors
+    /// An experiment that is no shear of grains with friction any more.
+    pub fn of(sizes: Sizes, grains: usize) -> Result<Self> {
+        let numbers = match sizes {
+            Sizes::Poster => Numbers::of("poster-shear")?,
+            Sizes::One | Sizes::LogNormal => Numbers::of("small-shear")?,
+        };
+        Ok(Self {
+            packing: Packing::of(sizes, grains),
+            numbers,
+        })
+    }
+}
 
 /// What is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,11 +48,21 @@ pub enum Case {
     PosterNoLedger,
     /// Neither tangential forces nor ledger.
     Frictionless,
+    /// As in a run of small-shear, grains of one size.
+    OneSize,
+    /// As in a run of small-shear, radii 1:10.
+    LogNormal,
 }
 
 impl Case {
     /// In the order of a round.
-    pub const ALL: [Self; 3] = [Self::Poster, Self::PosterNoLedger, Self::Frictionless];
+    pub const ALL: [Self; 5] = [
+        Self::Poster,
+        Self::PosterNoLedger,
+        Self::Frictionless,
+        Self::OneSize,
+        Self::LogNormal,
+    ];
 
     /// Name in tables and files.
     pub fn name(self) -> &'static str {
@@ -37,18 +70,23 @@ impl Case {
             Self::Poster => "poster",
             Self::PosterNoLedger => "poster-no-ledger",
             Self::Frictionless => "frictionless",
+            Self::OneSize => "one-size",
+            Self::LogNormal => "log-normal",
         }
     }
 
-    /// Shear `packing` from the start for one measurement.
-    pub fn run(
-        self,
-        poster: &Poster,
-        packing: &Packing,
-        threads: usize,
-        length: Length,
-    ) -> Result<Sample> {
-        let (model, start) = (self.model(poster, packing), start(poster, packing));
+    /// The grains that it takes.
+    pub fn sizes(self) -> Sizes {
+        match self {
+            Self::Poster | Self::PosterNoLedger | Self::Frictionless => Sizes::Poster,
+            Self::OneSize => Sizes::One,
+            Self::LogNormal => Sizes::LogNormal,
+        }
+    }
+
+    /// Shear `bed` from the start for one measurement.
+    pub fn run(self, bed: &Bed, threads: usize, length: Length) -> Result<Sample> {
+        let (model, start) = (self.model(bed), start(bed));
         let mut solver = Solver::new(model, start, threads)?;
         solver.advance(length.warm_up)?;
         let clock = Instant::now();
@@ -60,7 +98,7 @@ impl Case {
             .iter()
             .filter(|contact| matches!(contact.j, Body::Grain(_)))
             .count();
-        let grains = packing.len() as f64;
+        let grains = bed.packing.len() as f64;
         Ok(Sample {
             grain_steps_per_s: grains * length.steps as f64 / seconds,
             coordination_number: 2.0 * pairs as f64 / grains,
@@ -68,7 +106,8 @@ impl Case {
         })
     }
 
-    fn model(self, poster: &Poster, packing: &Packing) -> Model {
+    fn model(self, bed: &Bed) -> Model {
+        let Bed { packing, numbers } = bed;
         let plane = |name: &str, normal| Wall {
             name: name.into(),
             normal,
@@ -82,29 +121,30 @@ impl Case {
             },
             gravity: DVec3::ZERO,
             law: ContactLaw::Linear(Linear {
-                sliding: (self != Self::Frictionless).then_some(poster.sliding),
-                ..poster.law
+                sliding: (self != Self::Frictionless).then_some(numbers.sliding),
+                ..numbers.law
             }),
             walls: vec![plane("bottom", DVec3::Z), plane("top", DVec3::NEG_Z)],
-            drive: Some(Drive::Velocity(poster.strain_rate * HEIGHT)),
-            step: poster.step,
+            drive: Some(Drive::Velocity(numbers.strain_rate * packing.height)),
+            step: numbers.step,
             skin: None,
-            ledger: self == Self::Poster,
+            ledger: !matches!(self, Self::PosterNoLedger | Self::Frictionless),
         }
     }
 }
 
 /// The packing with a linear velocity profile between a held and a driven layer.
-fn start(poster: &Poster, packing: &Packing) -> State {
+fn start(bed: &Bed) -> State {
+    let Bed { packing, numbers } = bed;
     let mut grains = Grains::default();
     for (&position, &radius) in packing.position.iter().zip(&packing.radius) {
-        let k = grains.add_sphere(position, radius, poster.density) as usize;
-        let (horizontal, speed) = if position.z < LAYER {
+        let k = grains.add_sphere(position, radius, numbers.density) as usize;
+        let (horizontal, speed) = if position.z < packing.layer {
             (Horizontal::Held, 0.0)
-        } else if position.z > HEIGHT - LAYER {
-            (Horizontal::Driven, poster.strain_rate * HEIGHT)
+        } else if position.z > packing.height - packing.layer {
+            (Horizontal::Driven, numbers.strain_rate * packing.height)
         } else {
-            (Horizontal::Free, poster.strain_rate * position.z)
+            (Horizontal::Free, numbers.strain_rate * position.z)
         };
         grains.velocity[k] = DVec3::X * speed;
         grains.constraint[k] = Constraint {
@@ -118,7 +158,7 @@ fn start(poster: &Poster, packing: &Packing) -> State {
     };
     State {
         grains,
-        walls: vec![plane(0.0), plane(-HEIGHT)],
+        walls: vec![plane(0.0), plane(-packing.height)],
         ..State::default()
     }
 }

@@ -1,9 +1,9 @@
 //! The same bed, sheared in the same way by LAMMPS.
 
 use super::Length;
-use super::case::LAYER;
-use super::packing::{HEIGHT, Packing};
-use super::poster::Poster;
+use super::case::Bed;
+use super::numbers::Numbers;
+use super::packing::Packing;
 use super::report::Sample;
 use anyhow::{Context, Result, ensure};
 use std::fmt::Write as _;
@@ -25,10 +25,12 @@ enum Style {
 
 /// One law of LAMMPS on one packing, with the skin that is best for both.
 pub struct Lammps {
-    poster: Poster,
+    numbers: Numbers,
     style: Style,
     ranks: usize,
     grains: usize,
+    height: f64,
+    layer: f64,
     skin: f64,
     folder: TempDir,
 }
@@ -56,24 +58,22 @@ pub fn check_installed(parallel: bool) -> Result<()> {
 }
 
 impl Lammps {
-    /// Both laws on `packing`, each with the best of a few skins.
-    pub fn all(
-        poster: &Poster,
-        packing: &Packing,
-        ranks: usize,
-        length: Length,
-    ) -> Result<Vec<Self>> {
+    /// Both laws on `bed`, each with the best of a few skins.
+    pub fn all(bed: &Bed, ranks: usize, length: Length) -> Result<Vec<Self>> {
+        let Bed { packing, numbers } = bed;
         let tuned = [Style::HookeHistory, Style::Granular].map(|style| {
             let folder = TempDir::with_prefix("esker-bench-")?;
             std::fs::write(
                 folder.path().join("bed.data"),
-                data(packing, poster.density)?,
+                data(packing, numbers.density)?,
             )?;
             let mut peer = Self {
-                poster: *poster,
+                numbers: *numbers,
                 style,
                 ranks,
                 grains: packing.len(),
+                height: packing.height,
+                layer: packing.layer,
                 skin: SKINS[0],
                 folder,
             };
@@ -134,13 +134,14 @@ impl Lammps {
 
     /// The script: planes held, layers held and driven, linear profile, as in `case.rs`.
     fn input(&self, length: Length) -> Result<String> {
-        let Poster {
+        let (height, layer) = (self.height, self.layer);
+        let Numbers {
             law,
             sliding,
             step,
             strain_rate,
             density,
-        } = self.poster;
+        } = self.numbers;
         let (k_n, damping_n) = (law.normal_stiffness, law.normal_damping);
         let (k_t, damping_t, mu) = (sliding.stiffness, sliding.damping, sliding.friction_static);
         let law = match self.style {
@@ -154,7 +155,7 @@ impl Lammps {
                     "pair_style gran/hooke/history {k_n:e} {k_t:e} {pair_n} {pair_t} {mu} 1\n\
                      pair_coeff * *\n\
                      fix wall all wall/gran hooke/history {k_n:e} 0.0 {wall} 0.0 0.0 0 \
-                     zplane 0.0 {HEIGHT}\n"
+                     zplane 0.0 {height}\n"
                 )
             }
             Style::Granular => format!(
@@ -162,12 +163,12 @@ impl Lammps {
                  pair_coeff * * hooke {k_n:e} {damping_n} damping velocity \
                  tangential linear_history {k_t:e} {ratio} {mu}\n\
                  fix wall all wall/gran granular hooke {k_n:e} {damping_n} damping velocity \
-                 tangential linear_nohistory 0.0 0.0 zplane 0.0 {HEIGHT}\n",
+                 tangential linear_nohistory 0.0 0.0 zplane 0.0 {height}\n",
                 // It wants the tangential dashpot in units of the normal one.
                 ratio = damping_t / damping_n
             ),
         };
-        let (skin, speed) = (self.skin, strain_rate * HEIGHT);
+        let (skin, speed) = (self.skin, strain_rate * height);
         let Length { warm_up, steps } = length;
         let mut text = String::new();
         write!(
@@ -182,14 +183,14 @@ impl Lammps {
              neighbor {skin} bin\n\
              neigh_modify delay 0 every 1 check yes\n\
              {law}\
-             region bottom block INF INF INF INF INF {LAYER}\n\
+             region bottom block INF INF INF INF INF {layer}\n\
              region top block INF INF INF INF {top} INF\n\
              group bottom region bottom\n\
              group top region top\n\
              fix motion all nve/sphere\n\
              fix held bottom setforce 0 0 NULL\n\
              fix driven top setforce 0 0 NULL\n\
-             velocity all ramp vx 0 {speed} z 0.0 {HEIGHT} units box\n\
+             velocity all ramp vx 0 {speed} z 0.0 {height} units box\n\
              velocity top set {speed} 0 NULL\n\
              velocity bottom set 0 0 NULL\n\
              compute contacts all contact/atom\n\
@@ -201,7 +202,7 @@ impl Lammps {
              thermo_style custom step c_mean\n\
              run 0\n\
              print \"coordination $(c_mean)\"\n",
-            top = HEIGHT - LAYER
+            top = height - layer
         )?;
         Ok(text)
     }
@@ -216,7 +217,7 @@ fn data(packing: &Packing, density: f64) -> Result<String> {
         "a dense bed\n\n{} atoms\n1 atom types\n\n\
          0 {lx} xlo xhi\n0 {ly} ylo yhi\n-0.01 {zhi} zlo zhi\n\nAtoms\n\n",
         packing.len(),
-        zhi = HEIGHT + 0.01
+        zhi = packing.height + 0.01
     )?;
     for (k, (p, radius)) in packing.position.iter().zip(&packing.radius).enumerate() {
         let (id, diameter) = (k + 1, 2.0 * radius);

@@ -1,19 +1,19 @@
 //! `esker bench speed`: how many grain-steps a second on a dense sheared bed.
 //!
-//! Every round takes each case once, from the same packing, so that a machine whose clock
-//! wanders is fair to all of them; medians and extremes over the rounds are reported.
+//! Every round takes each case once, so that a machine whose clock wanders is fair to all of
+//! them; medians and extremes over the rounds are reported.
 
 mod case;
 mod lammps;
+mod numbers;
 mod packing;
-mod poster;
 mod report;
 
 use anyhow::{Context, Result, ensure};
+use case::Bed;
 use case::Case;
 use lammps::Lammps;
-use packing::Packing;
-use poster::Poster;
+use packing::Sizes;
 use report::{Row, Sample};
 use std::path::PathBuf;
 
@@ -60,12 +60,12 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
         lammps::check_installed(threads.iter().any(|&t| t > 1))?;
     }
 
-    let poster = Poster::read()?;
     let mut rows = Vec::new();
     for &grains in &args.grains {
-        let packing = Packing::of(grains);
+        let beds = Sizes::ALL.map(|sizes| Bed::of(sizes, grains));
+        let beds = beds.into_iter().collect::<Result<Vec<_>>>()?;
         for &threads in &threads {
-            let new = measure(&poster, &packing, threads, args)?;
+            let new = measure(&beds, threads, args)?;
             report::print(&new, args.rounds);
             rows.extend(new);
         }
@@ -74,23 +74,25 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
         let text = serde_json::to_string_pretty(&rows)? + "\n";
         std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
     }
+    // Where sizes differ much, many small grains float in the holes between large ones.
+    let dense = |row: &Row| row.case != Case::LogNormal.name();
     ensure!(
-        rows.iter().all(|row| row.coordination_number >= 4.0),
+        rows.iter()
+            .filter(|row| dense(row))
+            .all(|row| row.coordination_number >= 4.0),
         "a bed fell below 4 contacts a grain: these are not the speeds of a dense bed"
     );
     Ok(())
 }
 
-/// All cases on one packing and one number of threads, alternating.
-fn measure(
-    poster: &Poster,
-    packing: &Packing,
-    threads: usize,
-    args: &SpeedArgs,
-) -> Result<Vec<Row>> {
-    let length = Length::of(packing.len(), threads);
+/// All cases at one number of grains and of threads, alternating; one bed for each of
+/// [`Sizes::ALL`].
+fn measure(beds: &[Bed], threads: usize, args: &SpeedArgs) -> Result<Vec<Row>> {
+    let bed = |case: Case| &beds[case.sizes() as usize];
+    let poster_bed = bed(Case::Poster);
+    let length = Length::of(poster_bed.packing.len(), threads);
     let lammps = if args.with_lammps {
-        Lammps::all(poster, packing, threads, length)?
+        Lammps::all(poster_bed, threads, length)?
     } else {
         Vec::new()
     };
@@ -98,23 +100,32 @@ fn measure(
     let mut peers: Vec<_> = lammps.iter().map(|peer| (peer, Vec::new())).collect();
     for _ in 0..args.rounds {
         for (case, samples) in &mut own {
-            samples.push(case.run(poster, packing, threads, length)?);
+            samples.push(case.run(bed(*case), threads, length)?);
         }
         for (peer, samples) in &mut peers {
             samples.push(peer.run(length)?);
         }
     }
 
-    let row = |case: &str, backend, samples: &[Sample]| {
-        Row::new(case, backend, packing, threads, samples)
-    };
-    let of_poster = &own[0].1;
-    let mut rows: Vec<Row> = own.iter().map(|(c, s)| row(c.name(), "cpu", s)).collect();
-    rows.extend(peers.iter().map(|(peer, samples)| Row {
-        poster_ratio: Some(report::ratio(of_poster, samples)),
-        ..row(&peer.name(), "lammps", samples)
-    }));
-    Ok(rows)
+    let samples = |case: Case| &own[case as usize].1;
+    let one_size = samples(Case::OneSize);
+    let own_rows = own.iter().map(|(case, samples)| Row {
+        one_size_ratio: (*case == Case::LogNormal)
+            .then(|| report::ratio(samples, one_size, Sample::contacts_per_s)),
+        ..Row::new(case.name(), "cpu", &bed(*case).packing, threads, samples)
+    });
+    let poster = samples(Case::Poster);
+    let peer_rows = peers.iter().map(|(peer, samples)| Row {
+        poster_ratio: Some(report::ratio(poster, samples, |s| s.grain_steps_per_s)),
+        ..Row::new(
+            &peer.name(),
+            "lammps",
+            &poster_bed.packing,
+            threads,
+            samples,
+        )
+    });
+    Ok(own_rows.chain(peer_rows).collect())
 }
 
 /// How long one measurement is.

@@ -15,6 +15,13 @@ pub struct Sample {
     pub bytes_per_grain: f64,
 }
 
+impl Sample {
+    /// Contacts between grains times steps over wall time (1/s).
+    pub fn contacts_per_s(&self) -> f64 {
+        0.5 * self.coordination_number * self.grain_steps_per_s
+    }
+}
+
 /// One case over all rounds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
@@ -32,6 +39,8 @@ pub struct Row {
     pub grain_steps_per_s: f64,
     /// Slowest and fastest round (1/s).
     pub grain_steps_per_s_range: [f64; 2],
+    /// Contacts between grains times steps over wall time, median (1/s).
+    pub contacts_per_s: f64,
     /// Mean number of grains that a grain touches, at the end.
     pub coordination_number: f64,
     /// Volume of the grains over that between the planes.
@@ -41,9 +50,12 @@ pub struct Row {
     /// On rows of LAMMPS: speed of `poster` over this one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poster_ratio: Option<Ratio>,
+    /// On `log-normal`: its contacts per second over those of `one-size`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub one_size_ratio: Option<Ratio>,
 }
 
-/// How many times faster one case is than another.
+/// How many times as fast one case is as another.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
     /// Median of the ratios of the rounds.
@@ -63,6 +75,7 @@ impl Row {
     ) -> Self {
         let (grain_steps_per_s, grain_steps_per_s_range) =
             median_and_range(samples.iter().map(|s| s.grain_steps_per_s));
+        let (contacts_per_s, _) = median_and_range(samples.iter().map(Sample::contacts_per_s));
         let last = samples[samples.len() - 1];
         Self {
             case: case.into(),
@@ -72,20 +85,19 @@ impl Row {
             threads,
             grain_steps_per_s,
             grain_steps_per_s_range,
+            contacts_per_s,
             coordination_number: last.coordination_number,
             solid_fraction: packing.solid_fraction(),
             bytes_per_grain: last.bytes_per_grain,
             poster_ratio: None,
+            one_size_ratio: None,
         }
     }
 }
 
-/// Ratios of the rounds of two cases.
-pub fn ratio(fast: &[Sample], slow: &[Sample]) -> Ratio {
-    let each = fast
-        .iter()
-        .zip(slow)
-        .map(|(f, s)| f.grain_steps_per_s / s.grain_steps_per_s);
+/// Ratios of the speeds of two cases, round by round.
+pub fn ratio(fast: &[Sample], slow: &[Sample], speed: impl Fn(&Sample) -> f64) -> Ratio {
+    let each = fast.iter().zip(slow).map(|(f, s)| speed(f) / speed(s));
     let (median, range) = median_and_range(each);
     Ratio { median, range }
 }
@@ -94,26 +106,38 @@ pub fn ratio(fast: &[Sample], slow: &[Sample]) -> Ratio {
 pub fn print(rows: &[Row], rounds: u32) {
     let first = &rows[0];
     println!(
-        "{} grains, threads: {}, rounds: {rounds}, {}, solid fraction {:.3}",
-        first.grains, first.threads, first.device, first.solid_fraction
+        "{} grains, threads: {}, rounds: {rounds}, {}",
+        first.grains, first.threads, first.device
     );
     println!(
-        "  {:<32} {:>13} {:>21} {:>9} {:>11}",
-        "case", "grain-steps/s", "slowest .. fastest", "contacts", "bytes/grain"
+        "  {:<32} {:>13} {:>21} {:>10} {:>9} {:>9} {:>11}",
+        "case",
+        "grain-steps/s",
+        "slowest .. fastest",
+        "contacts/s",
+        "a grain",
+        "fraction",
+        "bytes/grain"
     );
     for row in rows {
         let [low, high] = row.grain_steps_per_s_range;
         print!(
-            "  {:<32} {:>13.3e} {:>21} {:>9.2} {:>11.0}",
+            "  {:<32} {:>13.3e} {:>21} {:>10.3e} {:>9.2} {:>9.3} {:>11.0}",
             row.case,
             row.grain_steps_per_s,
             format!("{low:.2e} .. {high:.2e}"),
+            row.contacts_per_s,
             row.coordination_number,
+            row.solid_fraction,
             row.bytes_per_grain
         );
         if let Some(Ratio { median, range }) = row.poster_ratio {
             let [low, high] = range;
             print!("  poster is {median:.2} times as fast ({low:.2} .. {high:.2})");
+        }
+        if let Some(Ratio { median, range }) = row.one_size_ratio {
+            let [low, high] = range;
+            print!("  {median:.2} times the contacts/s of one-size ({low:.2} .. {high:.2})");
         }
         println!();
     }

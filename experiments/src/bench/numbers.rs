@@ -1,4 +1,4 @@
-//! The numbers of the poster's experiment, from its scene.
+//! The numbers of a ready-made experiment, from its scene.
 
 use crate::ready;
 use crate::scene::{Document, Scene, Shear};
@@ -7,9 +7,9 @@ use dem::ContactLaw;
 use dem::contact::{Linear, Sliding};
 use std::path::Path;
 
-/// What a bench shares with `poster-shear`, SI units.
+/// What a bench shares with an experiment, SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Poster {
+pub struct Numbers {
     /// How grains push each other.
     pub law: Linear,
     /// Its tangential part.
@@ -22,13 +22,12 @@ pub struct Poster {
     pub density: f64,
 }
 
-impl Poster {
-    /// Read the scene.
+impl Numbers {
+    /// Read the scene of the experiment `name`.
     ///
     /// # Errors
     /// A scene that is no shear of grains with friction any more.
-    pub fn read() -> Result<Self> {
-        let name = "poster-shear";
+    pub fn of(name: &str) -> Result<Self> {
         let text = ready::find(name).context("it is ready-made")?.scene();
         let scene = Scene::read(&Document::new(name, Path::new("."), text, &[])?)?;
         let sheared = scene.phases.iter().find_map(|phase| match phase.shear {
