@@ -17,6 +17,7 @@ mod model;
 mod motion;
 pub mod output;
 mod reading;
+mod regroup;
 mod search;
 mod shared;
 mod slab;

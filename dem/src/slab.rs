@@ -18,15 +18,17 @@ pub(crate) const BLOCK: usize = 64;
 pub(crate) struct Slab {
     /// The grains it moves.
     pub own: Range<usize>,
-    /// Pairs with at least one own grain, in global order, padded with the dummy pair to
-    /// whole groups of four, and one more group of dummies.
-    pub pairs: Vec<[Place; 2]>,
+    /// Pairs with at least one own grain, in an order that all slabs share, padded with the
+    /// dummy pair to whole groups of four. Slot 4 g + k is pair k of group g.
+    pub pairs: Vec<[[Place; 2]; 4]>,
     /// Rows of the sums below to which the two grains of each pair belong: their places
     /// among the own grains, or the spare row.
-    pub targets: Vec<[Place; 2]>,
+    pub targets: Vec<[[Place; 2]; 4]>,
     /// Pairs without the padding.
     pub pair_count: usize,
-    /// Bit k of entry g: does pair 4 g + k touch?
+    /// Ends of the stretches of pairs within which [`regroup`](Self::regroup) orders them.
+    pub stretches: Vec<usize>,
+    /// Bit k of entry g: did pair k of group g touch in the last evaluation?
     pub touching: Vec<u8>,
     /// What the pairs remember.
     pub slots: Slots,
@@ -39,9 +41,6 @@ pub(crate) struct Slab {
     pub torque: Vec<Row>,
     /// Sum of rolling losses of own grains [J].
     pub rolling_loss: Vec<f64>,
-    /// What springs of contacts that part in a sweep still hold: row of the sums, energy of
-    /// sliding and of rolling [J].
-    pub parted: Vec<(Place, [f64; 2])>,
     /// Losses since the solver began, one entry a block of own grains.
     pub losses: Vec<Loss>,
     /// Own grains whose horizontal motion is held, and driven, with their place in the gauge.
@@ -70,23 +69,24 @@ pub(crate) struct Loss {
     pub outside: f64,
 }
 
-/// History of contacts, one row a slot; arrays that the law does not use stay empty.
+/// History of contacts in groups of four, as columns that a vector loads at once; arrays
+/// that the law does not use stay empty. Slot 4 g + k is lane k of group g.
 #[derive(Clone, Default)]
 pub(crate) struct Slots {
     /// Tangential spring, and 1 if sliding.
-    pub spring: Vec<Row>,
+    pub spring: Vec<[Row; 4]>,
     /// Force on i in the last step.
-    pub force: Vec<Row>,
+    pub force: Vec<[Row; 3]>,
     /// Rolling spring and twisting spring.
-    pub rolling: Vec<Row>,
+    pub rolling: Vec<[Row; 4]>,
     /// Rolling and twisting torque on i in the last step.
-    pub couple: Vec<Row>,
+    pub couple: Vec<[Row; 3]>,
 }
 
 /// Springs and flags of [`Slots`].
 pub(crate) struct Springs {
-    spring: Vec<Row>,
-    rolling: Vec<Row>,
+    spring: Vec<[Row; 4]>,
+    rolling: Vec<[Row; 4]>,
 }
 
 /// History of one contact.
@@ -123,51 +123,75 @@ impl Kept {
     }
 }
 
+/// One slot of columns as a row; zero where there are none.
+fn get<const N: usize>(columns: &[[Row; N]], slot: usize) -> Row {
+    let mut row = Row::ZERO;
+    if let Some(columns) = columns.get(slot / 4) {
+        for (component, column) in row.0.iter_mut().zip(columns) {
+            *component = column.0[slot % 4];
+        }
+    }
+    row
+}
+
+/// Write a row to one slot of columns, if there are any.
+fn set<const N: usize>(columns: &mut [[Row; N]], slot: usize, row: Row) {
+    if let Some(columns) = columns.get_mut(slot / 4) {
+        for (component, column) in row.0.iter().zip(columns) {
+            column.0[slot % 4] = *component;
+        }
+    }
+}
+
+fn copy<const N: usize>(columns: &mut [[Row; N]], from: usize, to: usize) {
+    if !columns.is_empty() {
+        for column in 0..N {
+            columns[to / 4][column].0[to % 4] = columns[from / 4][column].0[from % 4];
+        }
+    }
+}
+
 impl Slots {
-    /// `count` empty slots for a law that keeps these rows.
-    pub fn new(count: usize, slides: bool, turns: bool) -> Self {
-        let rows = |kept: bool| vec![Row::ZERO; if kept { count } else { 0 }];
+    /// Empty slots in `groups` groups for a law that keeps these columns.
+    pub fn new(groups: usize, slides: bool, turns: bool) -> Self {
+        let count = |kept: bool| if kept { groups } else { 0 };
         Self {
-            spring: rows(slides),
-            force: rows(true),
-            rolling: rows(turns),
-            couple: rows(turns),
+            spring: vec![[Row::ZERO; 4]; count(slides)],
+            force: vec![[Row::ZERO; 3]; groups],
+            rolling: vec![[Row::ZERO; 4]; count(turns)],
+            couple: vec![[Row::ZERO; 3]; count(turns)],
         }
     }
 
     pub fn get(&self, slot: usize) -> Kept {
-        let row = |rows: &[Row]| rows.get(slot).copied().unwrap_or_default();
         Kept {
-            spring: row(&self.spring),
-            force: row(&self.force),
-            rolling: row(&self.rolling),
-            couple: row(&self.couple),
+            spring: get(&self.spring, slot),
+            force: get(&self.force, slot),
+            rolling: get(&self.rolling, slot),
+            couple: get(&self.couple, slot),
         }
     }
 
     pub fn set(&mut self, slot: usize, kept: Kept) {
-        let put = |rows: &mut [Row], row| {
-            if let Some(place) = rows.get_mut(slot) {
-                *place = row;
-            }
-        };
-        put(&mut self.spring, kept.spring);
-        put(&mut self.force, kept.force);
-        put(&mut self.rolling, kept.rolling);
-        put(&mut self.couple, kept.couple);
+        set(&mut self.spring, slot, kept.spring);
+        set(&mut self.force, slot, kept.force);
+        set(&mut self.rolling, slot, kept.rolling);
+        set(&mut self.couple, slot, kept.couple);
+    }
+
+    /// Copy one slot to another.
+    pub fn copy(&mut self, from: usize, to: usize) {
+        copy(&mut self.spring, from, to);
+        copy(&mut self.force, from, to);
+        copy(&mut self.rolling, from, to);
+        copy(&mut self.couple, from, to);
     }
 
     /// Take springs and flags of the `touching` contacts from `given`.
     pub fn take_springs(&mut self, given: &Springs, touching: impl Iterator<Item = usize>) {
         for slot in touching {
-            for (own, given) in [
-                (&mut self.spring, &given.spring),
-                (&mut self.rolling, &given.rolling),
-            ] {
-                if let Some(own) = own.get_mut(slot) {
-                    *own = given[slot];
-                }
-            }
+            set(&mut self.spring, slot, get(&given.spring, slot));
+            set(&mut self.rolling, slot, get(&given.rolling, slot));
         }
     }
 
@@ -181,8 +205,10 @@ impl Slots {
 
     /// Memory in use [bytes].
     pub fn bytes(&self) -> usize {
-        let rows = self.spring.len() + self.force.len() + self.rolling.len() + self.couple.len();
-        rows * size_of::<Row>()
+        size_of_val(&self.spring[..])
+            + size_of_val(&self.force[..])
+            + size_of_val(&self.rolling[..])
+            + size_of_val(&self.couple[..])
     }
 }
 
@@ -200,14 +226,14 @@ pub(crate) struct WallSlab {
 }
 
 impl Slab {
-    /// Pairs and wall contacts that touch, as (slot, bit set).
+    /// Slots whose bits are set, of `count`.
     pub fn touches(touching: &[u8], count: usize) -> impl Iterator<Item = usize> {
         (0..count).filter(|slot| touching[slot / 4] >> (slot % 4) & 1 == 1)
     }
 
     pub fn bytes(&self) -> usize {
         let walls = self.walls.iter();
-        2 * self.pairs.len() * size_of::<[Place; 2]>()
+        2 * size_of_val(&self.pairs[..])
             + self.touching.len()
             + self.slots.bytes()
             + walls

@@ -188,6 +188,7 @@ impl Solver {
             slab.force.iter_mut().for_each(|row| row.0[3] = 0.0);
             slab.torque.iter_mut().for_each(|row| row.0[3] = 0.0);
             slab.rolling_loss.fill(0.0);
+            slab.regroup();
         }
         self.sorted.slabs = slabs;
         let gauges = &mut self.sorted.gauges;

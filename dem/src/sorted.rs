@@ -202,7 +202,7 @@ impl Sorted {
         let mut lasting = Vec::new();
         for slab in &self.slabs {
             for slot in Slab::touches(&slab.touching, slab.pair_count) {
-                let [i, j] = slab.pairs[slot].map(Place::index);
+                let [i, j] = slab.pairs[slot / 4][slot % 4].map(Place::index);
                 if slab.own.contains(&i) {
                     lasting.push(Lasting {
                         a: self.id[i],
