@@ -2,7 +2,8 @@
 
 use crate::lanes::{Place, Row};
 use crate::regroup::STRETCH;
-use crate::slab::{BLOCK, Gauged, Kept, Slab, Slots, WallSlab};
+use crate::slab::{BLOCK, Gauged, Slab, WallSlab};
+use crate::slots::{Kept, Slots};
 use crate::sorted::{Grain, Lasting, Layers};
 use crate::{Body, Error, Model};
 use std::ops::Range;

@@ -48,18 +48,23 @@ impl Place {
     }
 }
 
-/// The row at `place`, without a check: places are made by the neighbour search from the
-/// rows that there are.
+/// The row at `place`, without a check.
+///
+/// # Safety
+/// `place` lies in `rows`. The neighbour search makes places from the rows that there are.
 #[inline(always)]
-pub(crate) fn row(rows: &[Row], place: Place) -> &Row {
+pub(crate) unsafe fn row(rows: &[Row], place: Place) -> &Row {
     debug_assert!(place.index() < rows.len());
-    // SAFETY: see above; checked in builds with debug assertions.
+    // SAFETY: the caller's promise; checked in builds with debug assertions.
     unsafe { &*rows.as_ptr().byte_add(place.0 as usize) }
 }
 
 /// As [`row`], for writing.
+///
+/// # Safety
+/// As for [`row`].
 #[inline(always)]
-pub(crate) fn row_mut(rows: &mut [Row], place: Place) -> &mut Row {
+pub(crate) unsafe fn row_mut(rows: &mut [Row], place: Place) -> &mut Row {
     debug_assert!(place.index() < rows.len());
     // SAFETY: as in `row`.
     unsafe { &mut *rows.as_mut_ptr().byte_add(place.0 as usize) }

@@ -21,6 +21,7 @@ mod regroup;
 mod search;
 mod shared;
 mod slab;
+mod slots;
 mod snapshot;
 mod solver;
 mod sorted;
@@ -28,6 +29,7 @@ pub mod stability;
 mod state;
 mod step;
 mod sweep;
+mod view;
 mod walls;
 
 pub use contact::ContactLaw;

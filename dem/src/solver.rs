@@ -173,8 +173,8 @@ impl Solver {
         let barrier = Barrier::new(1);
         let crew = self.crew(&barrier, &[]);
         for slab in &mut slabs {
-            let walls = slab.walls.iter().map(|wall| wall.slots.springs());
-            let (pairs, walls) = (slab.slots.springs(), walls.collect::<Vec<_>>());
+            let walls = slab.walls.iter().map(|wall| wall.slots.clone());
+            let (pairs, walls) = (slab.slots.clone(), walls.collect::<Vec<_>>());
             crew.push_own(slab, &self.boundary, 0.0);
             // Measuring must not change what the contacts remember: a sliding one lies on its
             // limit, and half of them would stick by the change of velocities over half a step.

@@ -8,7 +8,7 @@ use crate::motion::{Own, TURN_EVERY, turned};
 use crate::regroup::REGROUP_EVERY;
 use crate::shared::Shared;
 use crate::slab::Slab;
-use crate::sweep::View;
+use crate::view::View;
 use glam::DQuat;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -156,7 +156,8 @@ impl Crew<'_> {
                 step,
             }
         };
-        self.kernels.pairs(&view, slab);
+        // SAFETY: rows and slabs were made by the same search.
+        unsafe { self.kernels.pairs(&view, slab) };
         for (k, wall) in model.walls.iter().enumerate() {
             let start = self.gauges.ranges[k].start + slab.walls[k].gauge;
             let range = start..start + slab.walls[k].count;

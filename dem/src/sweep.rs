@@ -1,74 +1,43 @@
 //! The pair loop: forces and torques of all contacts between grains.
 //!
 //! Pairs stand in groups of four, one for each lane of a vector, touching ones before the
-//! others. A round of groups goes through four short loops: choice (which groups have a
-//! contact), geometry, law, and scatter (forces added to grains). One long loop would leave
+//! others. A round of groups goes through five short loops: choice (which groups have a
+//! contact), geometry, law, books (losses and memory), and scatter (forces added to grains). One long loop would leave
 //! the processor waiting for each group; short ones let it overlap groups. Groups without a
 //! contact pay for the gap test alone.
 
-use crate::Domain;
-use crate::contact::{ContactLaw, Law, Losses, Memory, Response, Springs, Touch, Turn};
-use crate::lanes::{Lanes, Place, Row, V3, row, row_mut};
-use crate::slab::{Slab, Slots};
+use crate::contact::{Law, Losses, Response, Touch, Turn};
+use crate::lanes::{Lanes, Row, V3, row_mut};
+use crate::slab::Slab;
+use crate::slots::Slots;
+use crate::view::{Apart, View, Wrap};
 
-/// Groups in one round of the four loops; their scratch stays in the first-level cache.
+/// Groups in one round of the loops; their scratch stays in the first-level cache.
 const ROUND: usize = 16;
 
-/// What the contact kernels read. Rows are in sorted order, followed by the dummies.
-pub(crate) struct View<'a> {
-    pub law: &'a ContactLaw,
-    pub domain: Domain,
-    /// Centre, radius.
-    pub position: &'a [Row],
-    /// Velocity half a step ago, 0.
-    pub velocity: &'a [Row],
-    /// Angular velocity half a step ago, radius; empty where grains do not spin.
-    pub spin: &'a [Row],
-    /// Time over which springs grow [s]; zero in the first evaluation.
-    pub step: f64,
-}
-
-/// Dummies behind the grains: a pair that never touches, and a grain that touches no wall.
-pub(crate) const DUMMIES: [Row; 3] = [
-    Row([0.0, 0.0, 0.0, 0.0]),
-    Row([0.0, 0.0, 1.0, 0.0]),
-    Row([0.0, 0.0, 0.0, -1e30]),
-];
-
-/// Turns x_i - x_j into the difference of centres and the sum of radii.
-const SUM_OF_RADII: Row = Row([1.0, 1.0, 1.0, -1.0]);
 /// Reaction: the opposite vector, and no loss, which is booked on i alone.
 const REACTION: Row = Row([-1.0, -1.0, -1.0, 0.0]);
 
-/// Index without a check. All indices in the kernels come from the neighbour search, which
-/// makes pairs of sorted grains and dummies only.
-#[inline(always)]
-pub(crate) fn at<T>(slice: &[T], k: usize) -> &T {
-    debug_assert!(k < slice.len());
-    // SAFETY: see above; checked in builds with debug assertions.
-    unsafe { slice.get_unchecked(k) }
-}
-
-/// As [`at`], for writing.
-#[inline(always)]
-pub(crate) fn at_mut<T>(slice: &mut [T], k: usize) -> &mut T {
-    debug_assert!(k < slice.len());
-    // SAFETY: as in `at`.
-    unsafe { slice.get_unchecked_mut(k) }
-}
-
 /// Forces of all pairs of `slab`, added to the sums of its own grains.
+///
+/// # Safety
+/// The slab was cut for the rows of `view`: its places lie in them. The same holds for the
+/// loops below.
 #[inline(always)]
-pub(crate) fn sweep_pairs<V: Lanes, L: Law, const LEDGER: bool>(view: &View, slab: &mut Slab) {
+pub(crate) unsafe fn sweep_pairs<V: Lanes, L: Law, const LEDGER: bool>(
+    view: &View,
+    slab: &mut Slab,
+) {
     let law = L::of(view.law);
     let wrap = Wrap::<V>::new(view.domain);
     let step = V::splat(view.step);
     let mut round = Round::<V>::new();
     let mut next = 0;
     while next < slab.pairs.len() {
-        let count = choose(view, &wrap, slab, &mut next, &mut round);
+        // SAFETY: the caller's promise, as for the other loops.
+        let count = unsafe { choose(view, &wrap, slab, &mut next, &mut round) };
         for k in 0..count {
-            geometry::<V, L>(view, slab, &mut round, k);
+            unsafe { geometry::<V, L>(view, slab, &mut round, k) };
         }
         for k in 0..count {
             respond::<V, L>(&law, &slab.slots, step, &mut round, k);
@@ -77,7 +46,7 @@ pub(crate) fn sweep_pairs<V: Lanes, L: Law, const LEDGER: bool>(view: &View, sla
             book::<V, L, LEDGER>(&law, &mut slab.slots, step, &mut round, k);
         }
         for k in 0..count {
-            scatter::<V, L, LEDGER>(slab, &round, k);
+            unsafe { scatter::<V, L, LEDGER>(slab, &round, k) };
         }
     }
 }
@@ -120,83 +89,10 @@ impl<V: Lanes> Round<V> {
     }
 }
 
-/// Where the grains of four pairs are to each other.
-#[derive(Clone, Copy)]
-struct Apart<V: Lanes> {
-    /// From centre j to centre i [m], and its square.
-    d: V3<V>,
-    squared: V,
-    /// Sum of radii [m].
-    radii: V,
-    touches: V::Mask,
-}
-
-impl<V: Lanes> Apart<V> {
-    #[inline(always)]
-    fn none() -> Self {
-        let zero = V::splat(0.0);
-        Self {
-            d: V3::zero(),
-            squared: zero,
-            radii: zero,
-            touches: zero.greater(zero),
-        }
-    }
-}
-
-/// Shortest image along periodic sides: the box, or nothing where it is open.
-struct Wrap<V> {
-    length: [V; 2],
-    inverse: [V; 2],
-}
-
-impl<V: Lanes> Wrap<V> {
-    #[inline(always)]
-    fn new(domain: Domain) -> Self {
-        let inverse = |axis: usize| {
-            let periodic = domain.periodic[axis];
-            V::splat(if periodic {
-                1.0 / domain.size[axis]
-            } else {
-                0.0
-            })
-        };
-        Self {
-            length: [V::splat(domain.size[0]), V::splat(domain.size[1])],
-            inverse: [inverse(0), inverse(1)],
-        }
-    }
-
-    #[inline(always)]
-    fn nearest(&self, d: V, axis: usize) -> V {
-        (d * self.inverse[axis])
-            .round()
-            .neg_mul_add(self.length[axis], d)
-    }
-}
-
-/// From centre j to centre i, and the sum of radii.
-#[inline(always)]
-fn apart<V: Lanes>(view: &View, wrap: &Wrap<V>, pairs: &[[Place; 2]; 4]) -> (V3<V>, V) {
-    let signs = V::load(&SUM_OF_RADII);
-    let d0 = difference(view, signs, pairs[0]);
-    let d1 = difference(view, signs, pairs[1]);
-    let d2 = difference(view, signs, pairs[2]);
-    let d3 = difference(view, signs, pairs[3]);
-    let [x, y, z, radii] = V::transpose([d0, d1, d2, d3]);
-    (V3(wrap.nearest(x, 0), wrap.nearest(y, 1), z), radii)
-}
-
-#[inline(always)]
-fn difference<V: Lanes>(view: &View, signs: V, [i, j]: [Place; 2]) -> V {
-    let x_i = V::load(row(view.position, i));
-    V::load(row(view.position, j)).neg_mul_add(signs, x_i)
-}
-
 /// Gap test: the next groups, from `next` on, in which a pair touches or did so a step ago;
 /// returns how many.
 #[inline(always)]
-fn choose<V: Lanes>(
+unsafe fn choose<V: Lanes>(
     view: &View,
     wrap: &Wrap<V>,
     slab: &mut Slab,
@@ -204,22 +100,20 @@ fn choose<V: Lanes>(
     round: &mut Round<V>,
 ) -> usize {
     let mut count = 0;
-    while count < ROUND && *next < slab.pairs.len() {
-        let group = *next;
-        *next += 1;
-        let (d, radii) = apart(view, wrap, at(&slab.pairs, group));
-        let squared = d.dot(d);
-        let touches = (radii * radii).greater(squared);
-        round.groups[count] = group as u32;
-        round.apart[count] = Apart {
-            d,
-            radii,
-            squared,
-            touches,
-        };
-        let now = V::bits(touches) as u8;
-        let was = std::mem::replace(at_mut(&mut slab.touching, group), now);
+    let first = *next;
+    let groups = slab.pairs[first..].iter().zip(&mut slab.touching[first..]);
+    for (group, (pairs, touching)) in groups.enumerate() {
+        if count == ROUND {
+            break;
+        }
+        // SAFETY: the slab was cut for these rows.
+        let apart = unsafe { view.apart(wrap, pairs) };
+        round.groups[count] = (first + group) as u32;
+        round.apart[count] = apart;
+        let now = V::bits(apart.touches) as u8;
+        let was = std::mem::replace(touching, now);
         count += (now | was != 0) as usize;
+        *next += 1;
     }
     count
 }
@@ -227,12 +121,12 @@ fn choose<V: Lanes>(
 /// Normal, overlap and velocities of one group. For pairs that do not touch all but the
 /// normal is zero: to the law a contact that has parted is one without any pressure.
 #[inline(always)]
-fn geometry<V: Lanes, L: Law>(view: &View, slab: &Slab, round: &mut Round<V>, k: usize) {
-    let pairs = at(&slab.pairs, round.groups[k] as usize);
+unsafe fn geometry<V: Lanes, L: Law>(view: &View, slab: &Slab, round: &mut Round<V>, k: usize) {
+    let pairs = &slab.pairs[round.groups[k] as usize];
     let Apart {
         d,
-        radii,
         squared,
+        radii,
         touches,
     } = round.apart[k];
     let distance = squared.sqrt();
@@ -240,21 +134,15 @@ fn geometry<V: Lanes, L: Law>(view: &View, slab: &Slab, round: &mut Round<V>, k:
     let normal = d.scale(inverse_distance);
     let overlap = (radii - distance).keep(touches);
 
-    let [vx, vy, vz, _] = V::transpose([
-        relative(view.velocity, pairs[0]),
-        relative(view.velocity, pairs[1]),
-        relative(view.velocity, pairs[2]),
-        relative(view.velocity, pairs[3]),
-    ]);
-    let velocity = V3(vx, vy, vz);
+    // SAFETY: the slab was cut for these rows.
+    let velocity = unsafe { view.relative_velocity::<V>(pairs) };
     let separation = velocity.dot(normal);
     let one = V::splat(1.0);
     let mut slip = V3::zero();
     if L::SLIDES {
-        let [a, b, c, d] = *pairs;
-        let spin = |place| row(view.spin, place);
-        let (spin_i, radius_i) = columns([spin(a[0]), spin(b[0]), spin(c[0]), spin(d[0])]);
-        let (spin_j, radius_j) = columns([spin(a[1]), spin(b[1]), spin(c[1]), spin(d[1])]);
+        // SAFETY: as above, and a law that slides has grains that spin.
+        let (spin_i, radius_i) = unsafe { view.spins(pairs, 0) };
+        let (spin_j, radius_j) = unsafe { view.spins(pairs, 1) };
         let surface = spin_i
             .scale(L::velocity_arm(radius_i, overlap))
             .plus(L::velocity_arm(radius_j, overlap), spin_j);
@@ -281,87 +169,10 @@ fn geometry<V: Lanes, L: Law>(view: &View, slab: &Slab, round: &mut Round<V>, k:
     };
 }
 
-#[inline(always)]
-fn relative<V: Lanes>(rows: &[Row], [i, j]: [Place; 2]) -> V {
-    V::load(row(rows, i)) - V::load(row(rows, j))
-}
-
-/// Four rows as columns.
-#[inline(always)]
-pub(crate) fn columns<V: Lanes>([a, b, c, d]: [&Row; 4]) -> (V3<V>, V) {
-    let [x, y, z, w] = V::transpose([V::load(a), V::load(b), V::load(c), V::load(d)]);
-    (V3(x, y, z), w)
-}
-
-/// The springs of one group.
-#[inline(always)]
-pub(crate) fn springs<V: Lanes, L: Law>(slots: &Slots, group: usize) -> Springs<V> {
-    let mut springs = Springs::none();
-    if L::SLIDES {
-        let [x, y, z, sliding] = at(&slots.spring, group);
-        springs.tangential = V3::load([x, y, z]);
-        springs.sliding = V::load(sliding);
-    }
-    if L::TURNS {
-        let [x, y, z, twisting] = at(&slots.rolling, group);
-        springs.rolling = V3::load([x, y, z]);
-        springs.twisting = V::load(twisting);
-    }
-    springs
-}
-
-/// What one group lost in the step that led to `after`; its memory is that before it.
-#[inline(always)]
-pub(crate) fn losses<V: Lanes, L: Law>(
-    law: &L,
-    touch: &Touch<V>,
-    turn: &Turn<V>,
-    slots: &Slots,
-    group: usize,
-    after: &Response<V>,
-    step: V,
-) -> Losses<V> {
-    let [x, y, z] = at(&slots.force, group);
-    let mut before = Memory {
-        springs: springs::<V, L>(slots, group),
-        force: V3::load([x, y, z]),
-        couple: V3::zero(),
-    };
-    if L::TURNS {
-        let [x, y, z] = at(&slots.couple, group);
-        before.couple = V3::load([x, y, z]);
-    }
-    law.losses(touch, turn, &before, after, step)
-}
-
-/// Springs and forces after the step, for the next one.
-#[inline(always)]
-pub(crate) fn remember<V: Lanes, L: Law>(
-    slots: &mut Slots,
-    group: usize,
-    force: V3<V>,
-    response: &Response<V>,
-) {
-    let [x, y, z] = at_mut(&mut slots.force, group);
-    force.store([x, y, z]);
-    if L::SLIDES {
-        let [x, y, z, sliding] = at_mut(&mut slots.spring, group);
-        response.springs.tangential.store([x, y, z]);
-        response.springs.sliding.store(sliding);
-    }
-    if L::TURNS {
-        let [x, y, z, twisting] = at_mut(&mut slots.rolling, group);
-        response.springs.rolling.store([x, y, z]);
-        response.springs.twisting.store(twisting);
-        let [x, y, z] = at_mut(&mut slots.couple, group);
-        response.couple.store([x, y, z]);
-    }
-}
-
 /// The law of one group.
 #[inline(always)]
 fn respond<V: Lanes, L: Law>(law: &L, slots: &Slots, step: V, round: &mut Round<V>, k: usize) {
-    let springs = springs::<V, L>(slots, round.groups[k] as usize);
+    let springs = slots.springs::<V, L>(round.groups[k] as usize);
     let response = law.respond(&round.touch[k], &round.turn[k], &springs, step);
     // Not the whole: parts that the law does not use would cost a store each.
     let kept = &mut round.response[k];
@@ -391,10 +202,11 @@ fn book<V: Lanes, L: Law, const LEDGER: bool>(
     let (touch, turn, response) = (&round.touch[k], &round.turn[k], &round.response[k]);
     let mut lost = Losses::none();
     if LEDGER {
-        lost = losses(law, touch, turn, slots, group, response, step);
+        let before = slots.memory::<V, L>(group);
+        lost = law.losses(touch, turn, &before, response, step);
     }
     let force = response.tangential.plus(response.normal, touch.normal);
-    remember::<V, L>(slots, group, force, response);
+    slots.remember::<V, L>(group, force, response);
     if L::SLIDES {
         force.store_rows(lost.friction, &mut round.force[k]);
         let share = V::splat(0.0) - lost.viscosity * round.inverse_distance[k];
@@ -413,34 +225,49 @@ fn book<V: Lanes, L: Law, const LEDGER: bool>(
 /// Add the contacts of one group to the sums of their grains; what is not ours goes to the
 /// spare row.
 #[inline(always)]
-fn scatter<V: Lanes, L: Law, const LEDGER: bool>(slab: &mut Slab, round: &Round<V>, k: usize) {
-    let targets = at(&slab.targets, round.groups[k] as usize);
+unsafe fn scatter<V: Lanes, L: Law, const LEDGER: bool>(
+    slab: &mut Slab,
+    round: &Round<V>,
+    k: usize,
+) {
+    let targets = &slab.targets[round.groups[k] as usize];
     let reaction = V::load(&REACTION);
-    for lane in 0..4 {
-        let [i, j] = targets[lane];
+    for (lane, &[i, j]) in targets.iter().enumerate() {
         let force = V::load(&round.force[k][lane]);
-        add(row_mut(&mut slab.force, i), force);
-        react(row_mut(&mut slab.force, j), force, reaction);
+        // SAFETY: targets are own grains or the spare row; so below.
+        unsafe {
+            add(row_mut(&mut slab.force, i), force);
+            react(row_mut(&mut slab.force, j), force, reaction);
+        }
         if L::SLIDES {
             let couple = V::load(&round.couple[k][lane]);
-            let arm_i = V::splat(round.arms[k][0].0[lane]);
-            let arm_j = V::splat(round.arms[k][1].0[lane]);
-            let sum = row_mut(&mut slab.torque, i);
-            arm_i.neg_mul_add(couple, V::load(sum)).store(sum);
-            let sum = row_mut(&mut slab.torque, j);
-            arm_j.neg_mul_add(couple, V::load(sum)).store(sum);
+            let [arm_i, arm_j] = &round.arms[k];
+            // SAFETY: as above, and a law that slides has torques.
+            unsafe {
+                twist(row_mut(&mut slab.torque, i), arm_i.0[lane], couple);
+                twist(row_mut(&mut slab.torque, j), arm_j.0[lane], couple);
+            }
         }
         if L::TURNS {
             let turning = &round.turning[k][lane];
             let loss = turning.w();
             let vector = V::load(turning).with_last(V::splat(0.0));
-            add(row_mut(&mut slab.torque, i), vector);
-            react(row_mut(&mut slab.torque, j), vector, reaction);
+            // SAFETY: as above.
+            unsafe {
+                add(row_mut(&mut slab.torque, i), vector);
+                react(row_mut(&mut slab.torque, j), vector, reaction);
+            }
             if LEDGER {
-                *at_mut(&mut slab.rolling_loss, i.index()) += loss;
+                slab.rolling_loss[i.index()] += loss;
             }
         }
     }
+}
+
+/// Subtract the torque of `couple` on `arm`.
+#[inline(always)]
+fn twist<V: Lanes>(sum: &mut Row, arm: f64, couple: V) {
+    V::splat(arm).neg_mul_add(couple, V::load(sum)).store(sum);
 }
 
 /// Add the reaction to `what`.

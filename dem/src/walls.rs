@@ -6,9 +6,10 @@
 
 use crate::WallState;
 use crate::contact::{Law, Losses, Touch, Turn};
-use crate::lanes::{Lanes, Row, V3, row};
+use crate::lanes::{Lanes, Place, Row, V3};
 use crate::slab::Slab;
-use crate::sweep::{View, add, columns, losses, remember, springs};
+use crate::sweep::add;
+use crate::view::{View, columns};
 use glam::DVec3;
 
 /// Forces of wall `k` on the grains of `slab`, added to their sums.
@@ -31,16 +32,8 @@ pub(crate) fn sweep_wall<V: Lanes, L: Law, const LEDGER: bool>(
     let step = V::splat(view.step);
 
     for group in 0..wall.count.div_ceil(4) {
-        let g = &wall.grains[4 * group..4 * group + 4];
-        let rows = |rows| {
-            [
-                row(rows, g[0]),
-                row(rows, g[1]),
-                row(rows, g[2]),
-                row(rows, g[3]),
-            ]
-        };
-        let (x, radius) = columns::<V>(rows(view.position));
+        let grains = &wall.grains[4 * group..4 * group + 4];
+        let (x, radius) = columns::<V>(rows(view.position, grains));
         let overlap = radius - (x.dot(n) - V::splat(state.offset));
         // A grain that just touches counts: its dashpot does, as in the reference trajectories.
         let touches = overlap.greater(V::splat(-f64::MIN_POSITIVE));
@@ -51,7 +44,7 @@ pub(crate) fn sweep_wall<V: Lanes, L: Law, const LEDGER: bool>(
             continue;
         }
 
-        let (v, _) = columns::<V>(rows(view.velocity));
+        let (v, _) = columns::<V>(rows(view.velocity, grains));
         let velocity = v.minus(V::splat(state.velocity), n);
         let separation = velocity.dot(n);
         let mut touch = Touch {
@@ -63,7 +56,7 @@ pub(crate) fn sweep_wall<V: Lanes, L: Law, const LEDGER: bool>(
         };
         let mut turn = Turn::none();
         if L::SLIDES {
-            let (spin, _) = columns::<V>(rows(view.spin));
+            let (spin, _) = columns::<V>(rows(view.spin, grains));
             let surface = spin.scale(L::velocity_arm(radius, overlap));
             let slip = velocity.minus(separation, n).minus(one, surface.cross(n));
             touch.slip = slip.keep(touches);
@@ -72,14 +65,14 @@ pub(crate) fn sweep_wall<V: Lanes, L: Law, const LEDGER: bool>(
                 reduced_radius: radius,
             };
         }
-        let before = springs::<V, L>(&wall.slots, group);
-        let response = law.respond(&touch, &turn, &before, step);
+        let before = wall.slots.memory::<V, L>(group);
+        let response = law.respond(&touch, &turn, &before.springs, step);
         let mut lost = Losses::none();
         if LEDGER {
-            lost = losses(&law, &touch, &turn, &wall.slots, group, &response, step);
+            lost = law.losses(&touch, &turn, &before, &response, step);
         }
         let force = response.tangential.plus(response.normal, n);
-        remember::<V, L>(&mut wall.slots, group, force, &response);
+        wall.slots.remember::<V, L>(group, force, &response);
 
         // Where grains do not spin there are no torques: dashpot losses go with the force.
         let booked = if spins { lost.friction } else { lost.viscosity };
@@ -103,4 +96,9 @@ pub(crate) fn sweep_wall<V: Lanes, L: Law, const LEDGER: bool>(
         }
     }
     slab.walls[k] = wall;
+}
+
+#[inline(always)]
+fn rows<'a>(rows: &'a [Row], grains: &[Place]) -> [&'a Row; 4] {
+    [0, 1, 2, 3].map(|lane| &rows[grains[lane].index()])
 }
