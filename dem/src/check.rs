@@ -2,7 +2,7 @@
 
 use crate::contact::Turning;
 use crate::lanes::Place;
-use crate::sweep::DUMMIES;
+use crate::view::DUMMIES;
 use crate::{ContactLaw, Domain, Drive, Error, Grains, Model, State, WallMotion, WallState};
 
 /// Refuse what the solver cannot work with.

@@ -1,7 +1,9 @@
 //! Cutting the sorted grains into slabs, each with the histories of its contacts.
 
 use crate::lanes::{Place, Row};
-use crate::slab::{BLOCK, Gauged, Kept, Slab, Slots, WallSlab};
+use crate::regroup::STRETCH;
+use crate::slab::{BLOCK, Gauged, Slab, WallSlab};
+use crate::slots::{Kept, Slots};
 use crate::sorted::{Grain, Lasting, Layers};
 use crate::{Body, Error, Model};
 use std::ops::Range;
@@ -95,26 +97,35 @@ impl Cut<'_> {
     /// The slab of the grains `own`.
     pub fn slab(&self, own: Range<usize>) -> Slab {
         let (slides, turns) = (self.model.law.slides(), self.model.law.turns());
-        let ours = |k: u32| own.contains(&(k as usize));
         let n = self.grains.len();
 
-        let mut pairs = Vec::new();
+        let ours = |k: u32| own.contains(&(k as usize));
+        let mut chosen = Vec::new();
         let mut remembered = Vec::new();
+        let mut stretches = Vec::new();
+        let mut stretch = 0;
         let mut memory = self.memory.pairs.iter().peekable();
         for (index, pair) in self.pairs.iter().enumerate() {
             let kept = memory.next_if(|(at, _)| *at == index as u32);
             if ours(pair[0]) || ours(pair[1]) {
-                if let Some((_, kept)) = kept {
-                    remembered.push((pairs.len(), *kept));
+                if pair[0] as usize / STRETCH != stretch {
+                    stretch = pair[0] as usize / STRETCH;
+                    stretches.push(chosen.len());
                 }
-                pairs.push(pair.map(|k| Place::of(k as usize)));
+                if let Some((_, kept)) = kept {
+                    remembered.push((chosen.len(), *kept));
+                }
+                chosen.push(pair.map(|k| Place::of(k as usize)));
             }
         }
-        let pair_count = pairs.len();
-        let padded = pair_count.next_multiple_of(4) + 4;
-        pairs.resize(padded, [Place::of(n), Place::of(n + 1)]);
-        let mut slots = Slots::new(padded, slides, turns);
-        let mut touching = vec![0u8; padded / 4];
+        let pair_count = chosen.len();
+        stretches.push(pair_count);
+        let groups = pair_count.div_ceil(4);
+        chosen.resize(4 * groups, [Place::of(n), Place::of(n + 1)]);
+        let (pairs, _) = chosen.as_chunks();
+        let pairs = pairs.to_vec();
+        let mut slots = Slots::new(groups, slides, turns);
+        let mut touching = vec![0u8; groups];
         for (slot, kept) in remembered {
             slots.set(slot, kept);
             touching[slot / 4] |= 1 << (slot % 4);
@@ -124,7 +135,8 @@ impl Cut<'_> {
             let row = k.index().wrapping_sub(own.start);
             Place::of(row.min(own.len()))
         };
-        let targets = pairs.iter().map(|pair| pair.map(target)).collect();
+        let targets = |group: &[[Place; 2]; 4]| group.map(|pair| pair.map(target));
+        let targets = pairs.iter().map(targets).collect();
 
         let gauged = |layer: &[u32]| -> Vec<Gauged> {
             let all = layer.iter().enumerate().filter(|&(_, &k)| ours(k));
@@ -141,14 +153,13 @@ impl Cut<'_> {
         let weight = |k: usize| Row::new(self.grains[k].mass * self.model.gravity, 0.0);
         let mut force: Vec<Row> = own.clone().map(weight).collect();
         force.push(Row::ZERO);
-        Slab {
+        let mut slab = Slab {
             walls: (0..self.near_walls.len())
                 .map(|k| self.wall(k, &own))
                 .collect(),
             force,
             torque: vec![Row::ZERO; if slides { count + 1 } else { 0 }],
             rolling_loss: vec![0.0; if turns { count + 1 } else { 0 }],
-            parted: Vec::new(),
             losses: vec![Default::default(); count.div_ceil(BLOCK)],
             held: gauged(&self.layers[0]),
             driven: gauged(&self.layers[1]),
@@ -157,9 +168,12 @@ impl Cut<'_> {
             pairs,
             targets,
             pair_count,
+            stretches,
             touching,
             slots,
-        }
+        };
+        slab.regroup();
+        slab
     }
 
     fn wall(&self, k: usize, own: &Range<usize>) -> WallSlab {
@@ -174,7 +188,7 @@ impl Cut<'_> {
         let full = self.model.walls[k].surface == crate::Surface::Full;
         let slides = full && self.model.law.slides();
         let turns = full && self.model.law.turns();
-        let mut slots = Slots::new(grains.len(), slides, turns);
+        let mut slots = Slots::new(grains.len() / 4, slides, turns);
         let mut touching = vec![0u8; grains.len() / 4];
         for (grain, kept) in &self.memory.walls[k] {
             if let Ok(slot) = near.binary_search(grain) {

@@ -4,7 +4,8 @@ use crate::contact::{ContactLaw, Frictional, Lammps, Law, Normal};
 use crate::lanes::Portable;
 use crate::motion::{Own, move_grains};
 use crate::slab::Slab;
-use crate::sweep::{View, sweep_pairs};
+use crate::sweep::sweep_pairs;
+use crate::view::View;
 use crate::walls::sweep_wall;
 use crate::{Surface, WallState};
 use glam::DVec3;
@@ -47,8 +48,12 @@ impl Kernels {
     }
 
     /// Forces of all pairs.
-    pub fn pairs(&self, view: &View, slab: &mut Slab) {
-        // SAFETY: `choose` has seen that the processor has what the kernel needs.
+    ///
+    /// # Safety
+    /// The slab was cut for the rows of `view`.
+    pub unsafe fn pairs(&self, view: &View, slab: &mut Slab) {
+        // SAFETY: the caller's promise, and `choose` has seen that the processor has what the
+        // kernel needs.
         unsafe { (self.pairs)(view, slab) }
     }
 
@@ -66,7 +71,7 @@ impl Kernels {
             Surface::Frictionless => self.smooth_wall,
             Surface::Full => self.full_wall,
         };
-        // SAFETY: as above.
+        // SAFETY: `choose` has seen that the processor has what the kernel needs.
         unsafe { kernel(view, slab, k, wall.normal, state, gauge) }
     }
 
@@ -144,8 +149,9 @@ mod avx2 {
     }
 
     #[target_feature(enable = "avx2,fma")]
-    fn pairs<L: Law, const LEDGER: bool>(view: &View, slab: &mut Slab) {
-        sweep_pairs::<Avx2, L, LEDGER>(view, slab)
+    unsafe fn pairs<L: Law, const LEDGER: bool>(view: &View, slab: &mut Slab) {
+        // SAFETY: the caller's promise.
+        unsafe { sweep_pairs::<Avx2, L, LEDGER>(view, slab) }
     }
 
     #[target_feature(enable = "avx2,fma")]

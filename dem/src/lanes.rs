@@ -5,7 +5,6 @@
 //! multiplications differs. Everything here is `inline(always)` and free of closures:
 //! a closure would not inherit the vector features of the kernel that it is inlined into.
 
-use std::mem::MaybeUninit;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// One row of memory: three components and one more number, aligned for one vector load.
@@ -49,18 +48,23 @@ impl Place {
     }
 }
 
-/// The row at `place`, without a check: places are made by the neighbour search from the
-/// rows that there are.
+/// The row at `place`, without a check.
+///
+/// # Safety
+/// `place` lies in `rows`. The neighbour search makes places from the rows that there are.
 #[inline(always)]
-pub(crate) fn row(rows: &[Row], place: Place) -> &Row {
+pub(crate) unsafe fn row(rows: &[Row], place: Place) -> &Row {
     debug_assert!(place.index() < rows.len());
-    // SAFETY: see above; checked in builds with debug assertions.
+    // SAFETY: the caller's promise; checked in builds with debug assertions.
     unsafe { &*rows.as_ptr().byte_add(place.0 as usize) }
 }
 
 /// As [`row`], for writing.
+///
+/// # Safety
+/// As for [`row`].
 #[inline(always)]
-pub(crate) fn row_mut(rows: &mut [Row], place: Place) -> &mut Row {
+pub(crate) unsafe fn row_mut(rows: &mut [Row], place: Place) -> &mut Row {
     debug_assert!(place.index() < rows.len());
     // SAFETY: as in `row`.
     unsafe { &mut *rows.as_mut_ptr().byte_add(place.0 as usize) }
@@ -76,13 +80,6 @@ pub(crate) trait Lanes:
     fn splat(x: f64) -> Self;
     fn load(row: &Row) -> Self;
     fn store(self, row: &mut Row);
-    /// Store into a row that holds nothing yet.
-    #[inline(always)]
-    fn store_new(self, row: &mut MaybeUninit<Row>) {
-        debug_assert!(size_of::<Self>() == size_of::<Row>());
-        // SAFETY: both implementations are four doubles, aligned as a row.
-        row.write(unsafe { std::mem::transmute_copy(&self) });
-    }
     /// `self * b + c`
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// `c - self * b`
@@ -94,6 +91,8 @@ pub(crate) trait Lanes:
     fn greater(self, other: Self) -> Self::Mask;
     /// `a` where the mask is set, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// `self` where the mask is set, else 0.
+    fn keep(self, mask: Self::Mask) -> Self;
     /// Bit k is lane k.
     fn bits(mask: Self::Mask) -> u32;
     /// The last lane taken from `other`.
@@ -111,6 +110,29 @@ impl<V: Lanes> V3<V> {
     pub fn zero() -> Self {
         let zero = V::splat(0.0);
         Self(zero, zero, zero)
+    }
+
+    /// Three columns of memory.
+    #[inline(always)]
+    pub fn load([x, y, z]: [&Row; 3]) -> Self {
+        Self(V::load(x), V::load(y), V::load(z))
+    }
+
+    #[inline(always)]
+    pub fn store(self, [x, y, z]: [&mut Row; 3]) {
+        self.0.store(x);
+        self.1.store(y);
+        self.2.store(z);
+    }
+
+    /// Store as four rows, `w` in their fourth places.
+    #[inline(always)]
+    pub fn store_rows(self, w: V, rows: &mut [Row; 4]) {
+        let [a, b, c, d] = V::transpose([self.0, self.1, self.2, w]);
+        a.store(&mut rows[0]);
+        b.store(&mut rows[1]);
+        c.store(&mut rows[2]);
+        d.store(&mut rows[3]);
     }
 
     #[inline(always)]
@@ -150,6 +172,11 @@ impl<V: Lanes> V3<V> {
             s.neg_mul_add(b.1, self.1),
             s.neg_mul_add(b.2, self.2),
         )
+    }
+
+    #[inline(always)]
+    pub fn keep(self, mask: V::Mask) -> Self {
+        Self(self.0.keep(mask), self.1.keep(mask), self.2.keep(mask))
     }
 
     #[inline(always)]
@@ -239,6 +266,10 @@ impl Lanes for Portable {
             if m[2] { a[2] } else { b[2] },
             if m[3] { a[3] } else { b[3] },
         ])
+    }
+    #[inline(always)]
+    fn keep(self, mask: [bool; 4]) -> Self {
+        Self::select(mask, self, Self::splat(0.0))
     }
     #[inline(always)]
     fn bits(m: [bool; 4]) -> u32 {
@@ -335,6 +366,10 @@ mod avx2 {
         #[inline(always)]
         fn select(mask: __m256d, a: Self, b: Self) -> Self {
             Self(unsafe { _mm256_blendv_pd(b.0, a.0, mask) })
+        }
+        #[inline(always)]
+        fn keep(self, mask: __m256d) -> Self {
+            Self(unsafe { _mm256_and_pd(self.0, mask) })
         }
         #[inline(always)]
         fn bits(mask: __m256d) -> u32 {

@@ -7,7 +7,6 @@
 
 use crate::lanes::{Lanes, Row};
 use crate::slab::{BLOCK, Slab};
-use crate::sweep::{at, at_mut};
 use glam::{DQuat, DVec3};
 
 /// Rows and constants of the grains that one slab moves.
@@ -48,29 +47,38 @@ pub(crate) fn move_grains<V: Lanes, const SPINS: bool>(own: &mut Own, slab: &mut
             }
         }
         let (mut forces, mut torques, mut fastest) = (zero, zero, zero);
-        for g in range.clone() {
-            let row = at_mut(&mut slab.force, g);
-            let force = V::load(row);
-            (gravity * V::splat(*at(own.mass, g))).store(row);
+        // Slices of one length each: then their indices need no checks.
+        let count = range.len();
+        let (mass, kick) = (
+            &own.mass[range.clone()][..count],
+            &own.kick[range.clone()][..count],
+        );
+        let sums = &mut slab.force[range.clone()][..count];
+        let velocities = &mut own.velocity[range.clone()][..count];
+        let positions = &mut own.position[range.clone()][..count];
+        for g in 0..count {
+            let force = V::load(&sums[g]);
+            (gravity * V::splat(mass[g])).store(&mut sums[g]);
             forces = forces + force;
-            let row = at_mut(own.velocity, g);
-            let kick = V::splat(*at(own.kick, g));
-            let velocity = (force * vector).mul_add(kick, V::load(row));
-            velocity.store(row);
-            fastest = velocity.abs().max(fastest);
-            let row = at_mut(own.position, g);
-            velocity.mul_add(step, V::load(row)).store(row);
-            if SPINS {
-                let row = at_mut(&mut slab.torque, g);
-                let torque = V::load(row);
-                zero.store(row);
+            let kicked = (force * vector).mul_add(V::splat(kick[g]), V::load(&velocities[g]));
+            kicked.store(&mut velocities[g]);
+            fastest = kicked.abs().max(fastest);
+            let moved = kicked.mul_add(step, V::load(&positions[g]));
+            moved.store(&mut positions[g]);
+        }
+        if SPINS {
+            let twist = &own.twist[range.clone()][..count];
+            let sums = &mut slab.torque[range.clone()][..count];
+            let spins = &mut own.spin[range.clone()][..count];
+            let angles = &mut own.turned[range.clone()][..count];
+            for g in 0..count {
+                let torque = V::load(&sums[g]);
+                zero.store(&mut sums[g]);
                 torques = torques + torque;
-                let row = at_mut(own.spin, g);
-                let twist = V::splat(*at(own.twist, g));
-                let spin = (torque * vector).mul_add(twist, V::load(row));
-                spin.store(row);
-                let row = at_mut(own.turned, g);
-                spin.mul_add(step, V::load(row)).store(row);
+                let kicked = (torque * vector).mul_add(V::splat(twist[g]), V::load(&spins[g]));
+                kicked.store(&mut spins[g]);
+                let turned = kicked.mul_add(step, V::load(&angles[g]));
+                turned.store(&mut angles[g]);
             }
         }
         let (mut force_sum, mut torque_sum) = (Row::ZERO, Row::ZERO);

@@ -173,8 +173,8 @@ impl Solver {
         let barrier = Barrier::new(1);
         let crew = self.crew(&barrier, &[]);
         for slab in &mut slabs {
-            let walls = slab.walls.iter().map(|wall| wall.slots.springs());
-            let (pairs, walls) = (slab.slots.springs(), walls.collect::<Vec<_>>());
+            let walls = slab.walls.iter().map(|wall| wall.slots.clone());
+            let (pairs, walls) = (slab.slots.clone(), walls.collect::<Vec<_>>());
             crew.push_own(slab, &self.boundary, 0.0);
             // Measuring must not change what the contacts remember: a sliding one lies on its
             // limit, and half of them would stick by the change of velocities over half a step.
@@ -188,6 +188,7 @@ impl Solver {
             slab.force.iter_mut().for_each(|row| row.0[3] = 0.0);
             slab.torque.iter_mut().for_each(|row| row.0[3] = 0.0);
             slab.rolling_loss.fill(0.0);
+            slab.regroup();
         }
         self.sorted.slabs = slabs;
         let gauges = &mut self.sorted.gauges;

@@ -5,9 +5,10 @@ use crate::grains::{Constraint, Horizontal};
 use crate::lanes::{Place, Row};
 use crate::search::Grid;
 use crate::shared::Shared;
-use crate::slab::{BLOCK, Kept, Slab};
+use crate::slab::{BLOCK, Slab};
+use crate::slots::Kept;
 use crate::step::{Gauges, Rows};
-use crate::sweep::DUMMIES;
+use crate::view::DUMMIES;
 use crate::{Body, Contact, Error, Model, State};
 use glam::{DQuat, DVec3};
 use std::ops::Range;
@@ -202,7 +203,7 @@ impl Sorted {
         let mut lasting = Vec::new();
         for slab in &self.slabs {
             for slot in Slab::touches(&slab.touching, slab.pair_count) {
-                let [i, j] = slab.pairs[slot].map(Place::index);
+                let [i, j] = slab.pairs[slot / 4][slot % 4].map(Place::index);
                 if slab.own.contains(&i) {
                     lasting.push(Lasting {
                         a: self.id[i],

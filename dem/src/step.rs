@@ -5,9 +5,10 @@ use crate::boundary::{Boundary, Loading};
 use crate::kernels::Kernels;
 use crate::lanes::Row;
 use crate::motion::{Own, TURN_EVERY, turned};
+use crate::regroup::REGROUP_EVERY;
 use crate::shared::Shared;
 use crate::slab::Slab;
-use crate::sweep::View;
+use crate::view::View;
 use glam::DQuat;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -125,7 +126,11 @@ impl Crew<'_> {
             own.velocity[driven.own as usize].0[0] = boundary.drive_velocity;
         }
         let speed = self.kernels.motion(&mut own, slab);
-        if (boundary.sums.steps + 1).is_multiple_of(TURN_EVERY) {
+        let steps = boundary.sums.steps + 1;
+        if steps.is_multiple_of(REGROUP_EVERY) {
+            slab.regroup();
+        }
+        if steps.is_multiple_of(TURN_EVERY) {
             // SAFETY: as above.
             let orientation = unsafe { self.rows.orientation.write(spins) };
             for (orientation, rotation) in orientation.iter_mut().zip(own.turned) {
@@ -151,7 +156,8 @@ impl Crew<'_> {
                 step,
             }
         };
-        self.kernels.pairs(&view, slab);
+        // SAFETY: rows and slabs were made by the same search.
+        unsafe { self.kernels.pairs(&view, slab) };
         for (k, wall) in model.walls.iter().enumerate() {
             let start = self.gauges.ranges[k].start + slab.walls[k].gauge;
             let range = start..start + slab.walls[k].count;

@@ -14,8 +14,8 @@
 //! rotation in a step, which vanishes with the step.
 //! Proof:      tests/verification (friction, impacts, ledger)
 
-use super::turning::{Turning, resist};
-use super::{ContactLaw, Law, Memory, Normal, Response, Touch, Turn};
+use super::turning::{self, Turning};
+use super::{ContactLaw, Law, Losses, Memory, Normal, Response, Springs, Touch, Turn};
 use crate::lanes::{Lanes, V3};
 
 /// The description of the law.
@@ -104,64 +104,52 @@ impl<const TURNING: bool> Law for Frictional<TURNING> {
     }
 
     #[inline(always)]
-    fn respond<V: Lanes, const LEDGER: bool>(
+    fn respond<V: Lanes>(
         &self,
         touch: &Touch<V>,
         turn: &Turn<V>,
-        memory: Memory<V>,
+        springs: &Springs<V>,
         step: V,
     ) -> Response<V> {
-        let zero = V::splat(0.0);
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let (n, u) = (touch.normal, touch.slip);
         let (k_t, gamma_t) = (V::splat(self.stiffness), V::splat(self.damping));
 
-        let normal_force = self.normal.force(touch);
-        let pressing = normal_force.max(zero);
+        let normal = self.normal.force(touch);
+        let pressing = normal.max(zero);
 
-        let carried = memory.spring.minus(memory.spring.dot(n), n);
+        let old = springs.tangential;
+        let carried = old.minus(old.dot(n), n);
         let stretched = carried.plus(step, u);
-        let trial = V3::zero().minus(k_t, stretched).minus(gamma_t, u);
+        let dashpot = u.scale(zero - gamma_t);
+        let trial = dashpot.minus(k_t, stretched);
 
-        let was_sliding = memory.sliding.greater(V::splat(0.5));
+        let was_sliding = springs.sliding.greater(V::splat(0.5));
         let dynamic_limit = V::splat(self.friction_dynamic) * pressing;
         let static_limit = V::splat(self.friction_static) * pressing;
         let limit = V::select(was_sliding, dynamic_limit, static_limit);
         let trial_squared = trial.dot(trial);
         let slides = trial_squared.greater(limit * limit);
-        let one = V::splat(1.0);
         let cut = V::select(slides, dynamic_limit / trial_squared.sqrt(), one);
         let tangential = trial.scale(cut);
-        let relaxed = tangential
-            .plus(gamma_t, u)
-            .scale(V::splat(-self.compliance));
-        let spring = V3::select(slides, relaxed, stretched);
-
-        let (mut friction, mut viscosity) = (zero, zero);
-        if LEDGER {
-            let lost = memory.tangential_loss(k_t, tangential, spring, u, step);
-            friction = V::select(slides, lost, zero);
-            let dashpot = V::select(slides, zero, lost);
-            let before = memory.force.dot(n);
-            viscosity = dashpot + self.normal.loss(touch, before, normal_force, step);
-        }
+        let relaxed = dashpot
+            .minus(one, tangential)
+            .scale(V::splat(self.compliance));
 
         let mut response = Response {
-            normal_force,
+            normal,
             tangential,
             couple: V3::zero(),
-            memory: Memory {
-                spring,
-                sliding: V::select(slides, one, zero),
-                ..memory
+            springs: Springs {
+                tangential: V3::select(slides, relaxed, stretched),
+                sliding: touch.closed.keep(slides),
+                ..*springs
             },
-            friction,
-            viscosity,
-            rolling_loss: zero,
         };
         if TURNING {
-            resist::<V, LEDGER>(
-                &self.rolling,
-                &self.twisting,
+            let resistance = (&self.rolling, &self.twisting);
+            turning::resist(
+                resistance,
                 touch.normal,
                 turn,
                 pressing,
@@ -170,5 +158,23 @@ impl<const TURNING: bool> Law for Frictional<TURNING> {
             );
         }
         response
+    }
+
+    #[inline(always)]
+    fn losses<V: Lanes>(
+        &self,
+        touch: &Touch<V>,
+        turn: &Turn<V>,
+        before: &Memory<V>,
+        after: &Response<V>,
+        step: V,
+    ) -> Losses<V> {
+        let k_t = V::splat(self.stiffness);
+        let mut losses = Losses::of_sliding(&self.normal, k_t, touch, before, after, step);
+        if TURNING {
+            let resistance = (&self.rolling, &self.twisting);
+            losses.rolling = turning::loss(resistance, turn, before, after, step);
+        }
+        losses
     }
 }

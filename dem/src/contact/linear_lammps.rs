@@ -10,7 +10,7 @@
 //! from trajectories.
 //! Proof:  tests/verification/lammps/
 
-use super::{ContactLaw, Law, Memory, Normal, Response, Touch, Turn};
+use super::{ContactLaw, Law, Losses, Memory, Normal, Response, Springs, Touch, Turn};
 use crate::lanes::{Lanes, V3};
 
 /// The description of the law.
@@ -68,21 +68,21 @@ impl Law for Lammps {
     }
 
     #[inline(always)]
-    fn respond<V: Lanes, const LEDGER: bool>(
+    fn respond<V: Lanes>(
         &self,
         touch: &Touch<V>,
         _turn: &Turn<V>,
-        memory: Memory<V>,
+        springs: &Springs<V>,
         step: V,
     ) -> Response<V> {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let (n, u) = (touch.normal, touch.slip);
         let (k_t, gamma_t) = (V::splat(self.stiffness), V::splat(self.damping));
 
-        let normal_force = self.normal.force(touch);
-        let limit = V::splat(self.friction) * normal_force.abs();
+        let normal = self.normal.force(touch);
+        let limit = V::splat(self.friction) * normal.abs();
 
-        let old = memory.spring;
+        let old = springs.tangential;
         let along = old.dot(n);
         let tilted = (k_t * along.abs()).greater(V::splat(1e-10) * limit);
         let flat = old.minus(along, n);
@@ -104,28 +104,29 @@ impl Law for Lammps {
         let tangential = trial.scale(V::select(slides, cut, one));
         let relaxed = tangential.plus(gamma_t, u).scale(zero - one / k_t);
         let relaxed = V3::select(loaded, relaxed, stretched);
-        let spring = V3::select(slides, relaxed, stretched);
 
-        let (mut friction, mut viscosity) = (zero, zero);
-        if LEDGER {
-            let lost = memory.tangential_loss(k_t, tangential, spring, u, step);
-            friction = V::select(slides, lost, zero);
-            let dashpot = V::select(slides, zero, lost);
-            let before = memory.force.dot(n);
-            viscosity = dashpot + self.normal.loss(touch, before, normal_force, step);
-        }
         Response {
-            normal_force,
+            normal,
             tangential,
             couple: V3::zero(),
-            memory: Memory {
-                spring,
-                sliding: V::select(slides, one, zero),
-                ..memory
+            springs: Springs {
+                tangential: V3::select(slides, relaxed, stretched),
+                sliding: touch.closed.keep(slides),
+                ..*springs
             },
-            friction,
-            viscosity,
-            rolling_loss: zero,
         }
+    }
+
+    #[inline(always)]
+    fn losses<V: Lanes>(
+        &self,
+        touch: &Touch<V>,
+        _turn: &Turn<V>,
+        before: &Memory<V>,
+        after: &Response<V>,
+        step: V,
+    ) -> Losses<V> {
+        let k_t = V::splat(self.stiffness);
+        Losses::of_sliding(&self.normal, k_t, touch, before, after, step)
     }
 }

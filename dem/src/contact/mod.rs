@@ -67,6 +67,10 @@ impl ContactLaw {
 }
 
 /// Four contacts as a law sees them; the normal points from j to i.
+///
+/// Where bodies do not touch, all but the normal is zero. A law needs no case for this: a
+/// contact that has parted is one without pressure, whose springs slip to zero and lose what
+/// they held.
 #[derive(Clone, Copy)]
 pub(crate) struct Touch<V> {
     /// Unit normal.
@@ -77,6 +81,22 @@ pub(crate) struct Touch<V> {
     pub separation: V,
     /// Tangential velocity of i's surface against j's [m/s].
     pub slip: V3<V>,
+    /// 1 where they touch, else 0.
+    pub closed: V,
+}
+
+impl<V: Lanes> Touch<V> {
+    #[inline(always)]
+    pub fn none() -> Self {
+        let zero = V::splat(0.0);
+        Self {
+            normal: V3::zero(),
+            overlap: zero,
+            separation: zero,
+            slip: V3::zero(),
+            closed: zero,
+        }
+    }
 }
 
 /// Four contacts as resistance to rolling and twisting sees them.
@@ -88,19 +108,27 @@ pub(crate) struct Turn<V> {
     pub reduced_radius: V,
 }
 
-/// What four contacts remember, and the force of the last step, with which the work of
+/// What four contacts remember, and the forces of the last step, with which the work of
 /// a step is exact.
 #[derive(Clone, Copy)]
 pub(crate) struct Memory<V> {
-    /// Tangential spring [m]; `sliding` is 1 where the contact slides, else 0.
-    pub spring: V3<V>,
-    pub sliding: V,
-    /// Force of the last step [N]; only with a ledger.
+    pub springs: Springs<V>,
+    /// Force on i in the last step [N]; only with a ledger.
     pub force: V3<V>,
-    /// Rolling and twisting springs [m] and torque of the last step; only where the law turns.
+    /// Rolling and twisting torque on i in the last step [N m]; only with a ledger, where the
+    /// law turns.
+    pub couple: V3<V>,
+}
+
+/// The springs of four contacts.
+#[derive(Clone, Copy)]
+pub(crate) struct Springs<V> {
+    /// Tangential spring [m]; `sliding` is 1 where the contact slides, else 0.
+    pub tangential: V3<V>,
+    pub sliding: V,
+    /// Rolling and twisting springs [m]; only where the law turns.
     pub rolling: V3<V>,
     pub twisting: V,
-    pub couple: V3<V>,
 }
 
 impl<V: Lanes> Turn<V> {
@@ -113,30 +141,16 @@ impl<V: Lanes> Turn<V> {
     }
 }
 
-impl<V: Lanes> Memory<V> {
+impl<V: Lanes> Springs<V> {
     #[inline(always)]
     pub fn none() -> Self {
-        let zero = V3::zero();
-        let w = V::splat(0.0);
+        let (zero, w) = (V3::zero(), V::splat(0.0));
         Self {
-            spring: zero,
+            tangential: zero,
             sliding: w,
-            force: zero,
             rolling: zero,
             twisting: w,
-            couple: zero,
         }
-    }
-}
-
-impl<V: Lanes> Memory<V> {
-    /// Energy that the tangential contact took over the last drift [J]: the mean of its
-    /// force before and after times the way, less what its spring of stiffness `k_t` kept.
-    #[inline(always)]
-    pub fn tangential_loss(&self, k_t: V, force: V3<V>, spring: V3<V>, slip: V3<V>, step: V) -> V {
-        let work = step * (self.force.dot(slip) + force.dot(slip));
-        let stored = k_t * (spring.dot(spring) - self.spring.dot(self.spring));
-        V::splat(-0.5) * (work + stored)
     }
 }
 
@@ -144,18 +158,74 @@ impl<V: Lanes> Memory<V> {
 #[derive(Clone, Copy)]
 pub(crate) struct Response<V> {
     /// Normal force along the normal [N].
-    pub normal_force: V,
+    pub normal: V,
     /// Tangential force on i [N].
     pub tangential: V3<V>,
     /// Torque on i beyond that of the tangential force, its opposite acts on j [N m].
     pub couple: V3<V>,
     /// Springs after the step.
-    pub memory: Memory<V>,
-    /// Energy that went into sliding, dashpots, and rolling in this step [J]; only with a
-    /// ledger.
+    pub springs: Springs<V>,
+}
+
+impl<V: Lanes> Response<V> {
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self {
+            normal: V::splat(0.0),
+            tangential: V3::zero(),
+            couple: V3::zero(),
+            springs: Springs::none(),
+        }
+    }
+}
+
+/// Energy that four contacts lost in a step [J].
+#[derive(Clone, Copy)]
+pub(crate) struct Losses<V> {
     pub friction: V,
     pub viscosity: V,
-    pub rolling_loss: V,
+    pub rolling: V,
+}
+
+impl<V: Lanes> Losses<V> {
+    #[inline(always)]
+    pub fn none() -> Self {
+        let zero = V::splat(0.0);
+        Self {
+            friction: zero,
+            viscosity: zero,
+            rolling: zero,
+        }
+    }
+
+    /// Those of a linear normal force and a tangential spring of stiffness `k_t` with a
+    /// dashpot, which is cut to a limit where the contact slides.
+    ///
+    /// The tangential part is the mean of the force before and after times the way, less
+    /// what the spring kept. It goes into the dashpot of a contact that sticks, else into
+    /// friction; so does what was in the spring of a contact that has parted.
+    #[inline(always)]
+    pub fn of_sliding(
+        normal: &Normal,
+        k_t: V,
+        touch: &Touch<V>,
+        before: &Memory<V>,
+        after: &Response<V>,
+        step: V,
+    ) -> Self {
+        let u = touch.slip;
+        let work = step * (before.force.dot(u) + after.tangential.dot(u));
+        let (old, new) = (before.springs.tangential, after.springs.tangential);
+        let stored = k_t * (new.dot(new) - old.dot(old));
+        let tangential = V::splat(-0.5) * (work + stored);
+        let dashpot = tangential * (touch.closed - after.springs.sliding);
+        let pushed = before.force.dot(touch.normal);
+        Self {
+            friction: tangential - dashpot,
+            viscosity: dashpot + normal.loss(touch, pushed, after.normal, step),
+            rolling: V::splat(0.0),
+        }
+    }
 }
 
 /// A contact law ready for the kernel: the scene's choices are types, not branches.
@@ -176,11 +246,22 @@ pub(crate) trait Law: Copy + Send + Sync {
 
     /// Forces of four contacts after a step of `step` seconds, zero in the first evaluation.
     /// `turn` is read only where the law turns.
-    fn respond<V: Lanes, const LEDGER: bool>(
+    fn respond<V: Lanes>(
         &self,
         touch: &Touch<V>,
         turn: &Turn<V>,
-        memory: Memory<V>,
+        springs: &Springs<V>,
         step: V,
     ) -> Response<V>;
+
+    /// What went into sliding, dashpots and rolling in that step, in which the contacts went
+    /// from `before` to `after`.
+    fn losses<V: Lanes>(
+        &self,
+        touch: &Touch<V>,
+        turn: &Turn<V>,
+        before: &Memory<V>,
+        after: &Response<V>,
+        step: V,
+    ) -> Losses<V>;
 }

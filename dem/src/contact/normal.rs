@@ -4,8 +4,8 @@
 //! Source: Cundall and Strack (1979), Géotechnique 29, 47-65.
 //! Proof:  tests/verification (restitution, contact time)
 
-use super::{ContactLaw, Law, Memory, Response, Tension, Touch, Turn};
-use crate::lanes::{Lanes, V3};
+use super::{ContactLaw, Law, Losses, Memory, Response, Springs, Tension, Touch, Turn};
+use crate::lanes::Lanes;
 
 /// Spring and dashpot; also the whole law of frictionless grains and walls.
 #[derive(Clone, Copy)]
@@ -65,28 +65,32 @@ impl Law for Normal {
     }
 
     #[inline(always)]
-    fn respond<V: Lanes, const LEDGER: bool>(
+    fn respond<V: Lanes>(
         &self,
         touch: &Touch<V>,
         _turn: &Turn<V>,
-        memory: Memory<V>,
-        step: V,
+        _springs: &Springs<V>,
+        _step: V,
     ) -> Response<V> {
-        let zero = V::splat(0.0);
-        let normal_force = self.force(touch);
-        let viscosity = if LEDGER {
-            self.loss(touch, memory.force.dot(touch.normal), normal_force, step)
-        } else {
-            zero
-        };
         Response {
-            normal_force,
-            tangential: V3::zero(),
-            couple: V3::zero(),
-            memory,
-            friction: zero,
-            viscosity,
-            rolling_loss: zero,
+            normal: self.force(touch),
+            ..Response::none()
+        }
+    }
+
+    #[inline(always)]
+    fn losses<V: Lanes>(
+        &self,
+        touch: &Touch<V>,
+        _turn: &Turn<V>,
+        before: &Memory<V>,
+        after: &Response<V>,
+        step: V,
+    ) -> Losses<V> {
+        let pushed = before.force.dot(touch.normal);
+        Losses {
+            viscosity: self.loss(touch, pushed, after.normal, step),
+            ..Losses::none()
         }
     }
 }

@@ -8,7 +8,7 @@
 //! Source:   Luding (2008), Granular Matter 10, 235-246, sections 2.3.2 and 2.3.3.
 //! Proof:    tests/verification (spin decay, rolling on an incline)
 
-use super::{Response, Turn};
+use super::{Memory, Response, Turn};
 use crate::lanes::{Lanes, V3};
 
 /// Spring, dashpot and slider against rolling or twisting.
@@ -36,16 +36,15 @@ impl Turning {
 
 /// Add rolling and twisting resistance to `response`.
 #[inline(always)]
-pub(crate) fn resist<V: Lanes, const LEDGER: bool>(
-    rolling: &Turning,
-    twisting: &Turning,
+pub(crate) fn resist<V: Lanes>(
+    (rolling, twisting): (&Turning, &Turning),
     n: V3<V>,
     turn: &Turn<V>,
     pressing: V,
     step: V,
     response: &mut Response<V>,
 ) {
-    let memory = response.memory;
+    let old = response.springs;
     let zero = V::splat(0.0);
     let one = V::splat(1.0);
     let along = turn.spin.dot(n);
@@ -53,7 +52,7 @@ pub(crate) fn resist<V: Lanes, const LEDGER: bool>(
     let rate = turn.spin.minus(along, n).scale(turn.reduced_radius);
     let k = V::splat(rolling.stiffness);
     let gamma = V::splat(rolling.damping);
-    let carried = memory.rolling.minus(memory.rolling.dot(n), n);
+    let carried = old.rolling.minus(old.rolling.dot(n), n);
     let stretched = carried.plus(step, rate);
     let trial = V3::zero().minus(k, stretched).minus(gamma, rate);
     let limit = V::splat(rolling.friction) * pressing;
@@ -66,7 +65,7 @@ pub(crate) fn resist<V: Lanes, const LEDGER: bool>(
     let twist_rate = along * turn.reduced_radius;
     let k_twist = V::splat(twisting.stiffness);
     let gamma_twist = V::splat(twisting.damping);
-    let twist_stretched = twist_rate.mul_add(step, memory.twisting);
+    let twist_stretched = twist_rate.mul_add(step, old.twisting);
     let twist_trial = zero - k_twist * twist_stretched - gamma_twist * twist_rate;
     let twist_limit = V::splat(twisting.friction) * pressing;
     let twist_slides = twist_trial.abs().greater(twist_limit);
@@ -75,15 +74,25 @@ pub(crate) fn resist<V: Lanes, const LEDGER: bool>(
     let twist_relaxed = zero - gamma_twist.mul_add(twist_rate, twist_force) / k_twist;
     let twist_spring = V::select(twist_slides, twist_relaxed, twist_stretched);
 
-    let couple = force.plus(twist_force, n).scale(turn.reduced_radius);
-    if LEDGER {
-        let work = step * (memory.couple.dot(turn.spin) + couple.dot(turn.spin));
-        let stored = k * (spring.dot(spring) - memory.rolling.dot(memory.rolling));
-        let twisted = k_twist * (twist_spring * twist_spring - memory.twisting * memory.twisting);
-        response.rolling_loss = V::splat(-0.5) * (work + stored + twisted);
-    }
-    response.couple = couple;
-    response.memory.rolling = spring;
-    response.memory.twisting = twist_spring;
-    response.memory.couple = couple;
+    response.couple = force.plus(twist_force, n).scale(turn.reduced_radius);
+    response.springs.rolling = spring;
+    response.springs.twisting = twist_spring;
+}
+
+/// Energy lost in turning over the last drift [J]: the mean of the torque before and after
+/// times the angle, less what the springs kept.
+#[inline(always)]
+pub(crate) fn loss<V: Lanes>(
+    (rolling, twisting): (&Turning, &Turning),
+    turn: &Turn<V>,
+    before: &Memory<V>,
+    after: &Response<V>,
+    step: V,
+) -> V {
+    let work = step * (before.couple.dot(turn.spin) + after.couple.dot(turn.spin));
+    let (old, new) = (before.springs, after.springs);
+    let rolled = new.rolling.dot(new.rolling) - old.rolling.dot(old.rolling);
+    let twisted = new.twisting * new.twisting - old.twisting * old.twisting;
+    let stored = V::splat(rolling.stiffness) * rolled + V::splat(twisting.stiffness) * twisted;
+    V::splat(-0.5) * (work + stored)
 }

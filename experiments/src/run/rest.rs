@@ -7,9 +7,10 @@ use dem::{Model, Snapshot, State, WallMotion};
 /// Looks that must find rest in a row.
 const LOOKS: u32 = 10;
 
-/// Watches for the kinetic energy of grains and wall to stay below a fraction of the
+/// Watches for the kinetic energy of wall and grains to stay below a fraction of the
 /// elastic energy for as long as a grain needs to fall into a hole beside it, d √(ρ/σ): a
-/// bed whose motion was just set to zero is not at rest yet.
+/// bed whose motion was just set to zero is not at rest yet. Grains that touch no other do
+/// not count: what floats in a hole without gravity may spin for ever.
 #[derive(Clone, Debug)]
 pub struct RestWatch {
     every: u64,
@@ -52,7 +53,14 @@ impl RestWatch {
         let ledger = &now.ledger;
         let elastic = ledger.elastic_normal + ledger.elastic_tangential + ledger.elastic_rolling;
         let wall = 0.5 * self.wall_mass * now.state.walls[TOP].velocity.powi(2);
-        let kinetic = ledger.kinetic + ledger.rotational + wall;
+        let grains = &now.state.grains;
+        let moving = (0..grains.len()).map(|k| {
+            let (v, w) = (grains.velocity[k], grains.angular_velocity[k]);
+            grains.mass[k] * v.length_squared() + grains.moment_of_inertia[k] * w.length_squared()
+        });
+        let touching = dem::measure::neighbours(&now.state);
+        let of_bed = moving.zip(touching).filter(|&(_, touching)| touching > 0);
+        let kinetic = 0.5 * of_bed.map(|(energy, _)| energy).sum::<f64>() + wall;
         let at_rest = elastic > 0.0 && kinetic < limit * elastic;
         self.in_a_row = if at_rest { self.in_a_row + 1 } else { 0 };
         self.in_a_row >= LOOKS
