@@ -23,9 +23,7 @@ prepare_system() {
 
     if command -v apt-get >/dev/null; then
         echo "Installing with apt: ${missing[*]}"
-        as_root apt-get update -qq
-        as_root env DEBIAN_FRONTEND=noninteractive \
-            apt-get install -y -qq --no-install-recommends "${missing[@]}"
+        apt_install "${missing[@]}"
     elif [ ${#tools[@]} -eq 0 ] && has_cmake; then
         echo "There is no apt to install ${libraries[*]} (Debian's names) with."
         echo "Building NetCDF and HDF5 from source: this takes some minutes, once."
@@ -35,6 +33,27 @@ prepare_system() {
             "your package manager. Without NetCDF and HDF5, a C compiler and cmake 3.26 or" \
             "newer do too: both are then built from source (the feature \`static\`)."
     fi
+}
+
+# Vulkan, for the tests of the GPU: in software, where no graphics driver is installed. Without
+# it they are skipped, and everything else works.
+prepare_vulkan() {
+    [ "$(uname)" = Linux ] || return 0
+    # Mesa asks a display which device it prefers, and complains aloud where there is none.
+    export NODEVICE_SELECT=1
+    local missing=()
+    # Users may not have the folder of ldconfig in their path.
+    PATH="$PATH:/sbin:/usr/sbin" ldconfig -p | grep 'libvulkan\.so\.1' >/dev/null ||
+        missing+=(libvulkan1)
+    compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null ||
+        compgen -G '/etc/vulkan/icd.d/*.json' >/dev/null || missing+=(mesa-vulkan-drivers)
+    [ ${#missing[@]} -gt 0 ] || return 0
+
+    if command -v apt-get >/dev/null && can_be_root; then
+        echo "Installing with apt: ${missing[*]}"
+        apt_install "${missing[@]}" && return 0
+    fi
+    echo "Not here, and not installed: ${missing[*]} (Debian's names). Tests of the GPU are skipped."
 }
 
 # The Python of the tests and figures, in .venv.
@@ -56,6 +75,16 @@ has_library() {
 # HDF5's own build asks for 3.26.
 has_cmake() {
     command -v cmake >/dev/null && printf '3.26\n%s\n' "$(cmake --version | awk 'NR == 1 {print $3}')" | sort -VC
+}
+
+apt_install() {
+    as_root apt-get update -qq &&
+        as_root env DEBIAN_FRONTEND=noninteractive \
+            apt-get install -y -qq --no-install-recommends "$@"
+}
+
+can_be_root() {
+    [ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null
 }
 
 as_root() {

@@ -6,6 +6,7 @@ cd "$(dirname "$0")/.."
 . scripts/prepare.sh
 
 prepare_system
+prepare_vulkan
 prepare_python
 cargo test --workspace "${cargo_flags[@]}" "$@"
 # What users read with: the files of a short run of the program, opened with xarray.

@@ -52,6 +52,18 @@ pub enum Horizontal {
     Driven,
 }
 
+impl Constraint {
+    /// Factors of force and torque: 1 along what follows them, 0 along what does not.
+    pub(crate) fn freedom(self) -> [DVec3; 2] {
+        let free = match self.horizontal {
+            Horizontal::Free => DVec3::ONE,
+            Horizontal::Held | Horizontal::Driven => DVec3::Z,
+        };
+        let turns = if self.rotation_held { 0.0 } else { 1.0 };
+        [free, DVec3::splat(turns)]
+    }
+}
+
 impl Grains {
     /// Number of grains.
     pub fn len(&self) -> usize {

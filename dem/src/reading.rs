@@ -162,37 +162,12 @@ impl Solver {
     /// Energies now; sums stay zero.
     pub(crate) fn energies(&self) -> Ledger {
         let (grains, ..) = self.grains_now();
-        self.energies_of(&grains, &self.contacts())
-    }
-
-    fn energies_of(&self, grains: &Grains, contacts: &[Contact]) -> Ledger {
-        let mut ledger = Ledger {
-            kinetic: grains.kinetic_energy(),
-            rotational: grains.rotational_energy(),
-            ..Default::default()
-        };
-        for contact in contacts {
-            ledger.elastic_normal +=
-                0.5 * self.model.law.normal_stiffness() * contact.overlap * contact.overlap;
-            let [sliding, rolling] = Lasting::of(contact).kept.energies(&self.model.law);
-            ledger.elastic_tangential += sliding;
-            ledger.elastic_rolling += rolling;
-        }
-        let work = |k: usize| {
-            // The drive alone moves its grains along x, and answers for their weight.
-            let way = match grains.constraint[k].horizontal {
-                crate::Horizontal::Driven => grains.displacement[k] * DVec3::Z,
-                crate::Horizontal::Free | crate::Horizontal::Held => grains.displacement[k],
-            };
-            grains.mass[k] * self.model.gravity.dot(way)
-        };
-        ledger.work_gravity = (0..grains.len()).map(work).sum();
-        ledger
+        Ledger::of_instant(&self.model, &grains, &self.contacts())
     }
 
     fn ledger(&self, grains: &Grains, contacts: &[Contact]) -> Ledger {
         let start = &self.ledger_start;
-        let mut ledger = self.energies_of(grains, contacts);
+        let mut ledger = Ledger::of_instant(&self.model, grains, contacts);
         let loss = self.pending_losses();
         ledger.dissipated_friction = loss.friction;
         ledger.dissipated_viscosity = loss.viscosity;

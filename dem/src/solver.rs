@@ -8,7 +8,7 @@ use crate::lanes::Row;
 use crate::slab::{Loss, Slab};
 use crate::sorted::{Lasting, Sorted, grains_of};
 use crate::step::{Crew, Stop};
-use crate::{Drive, Ledger, Model, State, WallMotion, WallState};
+use crate::{Ledger, Model, State};
 use glam::DVec3;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicU64;
@@ -43,6 +43,9 @@ pub enum Error {
     /// The description or the state cannot be right.
     #[error("{0}")]
     Invalid(String),
+    /// The device of a solver on the GPU fails.
+    #[error(transparent)]
+    Device(#[from] shaders::Error),
     /// The numbers ran away.
     #[error("step {step}: {what}")]
     Unstable {
@@ -64,6 +67,23 @@ pub struct Outside<'a> {
     pub torque: &'a [DVec3],
 }
 
+impl Outside<'_> {
+    /// Refuse what is not one finite force and torque for each of `n` grains.
+    pub(crate) fn check(&self, n: usize) -> Result<(), Error> {
+        if self.force.len() != n || self.torque.len() != n {
+            let (f, t) = (self.force.len(), self.torque.len());
+            let what = format!("{f} outside forces and {t} torques for {n} grains");
+            return Err(Error::Invalid(what));
+        }
+        let mut all = self.force.iter().chain(self.torque);
+        if !all.all(|vector| vector.is_finite()) {
+            let what = "outside forces and torques must be finite numbers";
+            return Err(Error::Invalid(what.into()));
+        }
+        Ok(())
+    }
+}
+
 /// First surplus of the neighbour search, in mean radii; adapted if the model leaves it open.
 const SKIN: f64 = 0.02;
 /// Bounds of the adapted skin, in mean radii.
@@ -82,7 +102,7 @@ impl Solver {
     ///
     /// # Errors
     /// [`Error::Invalid`] for a description or state that cannot be right.
-    pub fn new(model: Model, state: State, threads: usize) -> Result<Self, Error> {
+    pub fn new(model: Model, mut state: State, threads: usize) -> Result<Self, Error> {
         crate::check::check(&model, &state)?;
         let cores = || std::thread::available_parallelism().map_or(1, |n| n.get());
         let threads = if threads == 0 { cores() } else { threads };
@@ -94,42 +114,11 @@ impl Solver {
             }
         };
 
-        let mut grains = grains_of(&state);
+        let drive_velocity = crate::start::constrain(&model, &mut state);
+        let grains = grains_of(&state);
         let driven = |g: &&crate::sorted::Grain| g.constraint.horizontal == Horizontal::Driven;
         let driven_mass = grains.iter().filter(driven).map(|g| g.mass).sum();
-        let momentum: f64 = grains
-            .iter()
-            .filter(driven)
-            .map(|g| g.mass * g.velocity.x)
-            .sum();
-        let drive_velocity = match model.drive {
-            Some(Drive::Velocity(velocity)) => velocity,
-            Some(Drive::ShearStress(_)) if driven_mass > 0.0 => momentum / driven_mass,
-            _ => 0.0,
-        };
-        for grain in &mut grains {
-            match grain.constraint.horizontal {
-                Horizontal::Free => {}
-                Horizontal::Held => grain.velocity *= DVec3::Z,
-                Horizontal::Driven => {
-                    grain.velocity = DVec3::new(drive_velocity, 0.0, grain.velocity.z);
-                }
-            }
-            if grain.constraint.rotation_held || !model.law.slides() {
-                grain.spin = DVec3::ZERO;
-            }
-        }
-        let walls = model.walls.iter().zip(&state.walls);
-        let walls: Vec<WallState> = walls
-            .map(|(wall, state)| match wall.motion {
-                WallMotion::Held => WallState {
-                    velocity: 0.0,
-                    ..*state
-                },
-                WallMotion::Velocity(velocity) => WallState { velocity, ..*state },
-                WallMotion::Stress(_) => *state,
-            })
-            .collect();
+        let walls = state.walls.clone();
         let boundary = Boundary {
             wall_force: vec![0.0; walls.len()],
             sums: crate::Sums {
@@ -398,17 +387,7 @@ impl Solver {
     }
 
     fn sort_outside(&self, outside: Outside) -> Result<(Vec<Row>, Vec<Row>), Error> {
-        let n = self.sorted.id.len();
-        if outside.force.len() != n || outside.torque.len() != n {
-            let (f, t) = (outside.force.len(), outside.torque.len());
-            let what = format!("{f} outside forces and {t} torques for {n} grains");
-            return Err(Error::Invalid(what));
-        }
-        let mut all = outside.force.iter().chain(outside.torque);
-        if !all.all(|vector| vector.is_finite()) {
-            let what = "outside forces and torques must be finite numbers";
-            return Err(Error::Invalid(what.into()));
-        }
+        outside.check(self.sorted.id.len())?;
         Ok(self.sorted_rows(outside.force, outside.torque))
     }
 

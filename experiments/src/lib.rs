@@ -1,8 +1,10 @@
 //! The program esker: scenes, protocol, output.
 
+pub mod backend;
 pub mod bed;
 pub mod bench;
 pub mod commands;
+pub mod engine;
 pub mod output;
 pub mod protocol;
 pub mod ready;

@@ -28,6 +28,8 @@ enum Command {
     New(New),
     /// Turn a bed of grains from another program into NetCDF
     Import(Import),
+    /// List the processor and the graphics devices, and what --backend auto takes
+    Info,
     /// Measure how fast this machine is
     #[command(subcommand)]
     Bench(Bench),
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::List => commands::list(),
         Command::New(arguments) => commands::new(&arguments),
         Command::Import(arguments) => commands::import(&arguments),
+        Command::Info => commands::info(),
         Command::Bench(arguments) => commands::bench(&arguments),
     };
     match done {

@@ -86,6 +86,11 @@ fn drive(phase: &Phase, height: f64) -> Option<Drive> {
     })
 }
 
+/// The models of all phases, where heights do not matter.
+pub fn models(scene: &Scene) -> impl Iterator<Item = Model> {
+    scene.phases.iter().map(|phase| model(scene, phase, 1.0))
+}
+
 /// Bottom, top, and a pair of frictionless ones for each side that is not periodic.
 fn walls(scene: &Scene, phase: &Phase) -> Vec<Wall> {
     let wall = |name: &str, normal, surface, motion| Wall {

@@ -9,13 +9,15 @@ mod summary;
 
 pub use summary::{Outcome, PhaseSummary, Summary};
 
+use crate::backend::{Backend, Machine};
+use crate::engine::Engine;
 use crate::output::state::Saved;
 use crate::output::{self, FileKind, Header, Plan, Writer};
 use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
 use crate::scene::{self, Phase, Scene};
 use anyhow::{Context, Error, Result, bail, ensure};
 use bed::Bed;
-use dem::{Drive, Model, Solver, State, Sums, measure};
+use dem::{Drive, Model, State, Sums, measure};
 use intervals::Intervals;
 use pace::Pace;
 use progress::Progress;
@@ -30,7 +32,9 @@ use std::time::Instant;
 pub struct Options {
     /// Folder of the results.
     pub out: PathBuf,
-    /// Number of threads; 0: one for each core.
+    /// Who computes.
+    pub backend: Backend,
+    /// Number of threads of the CPU; 0: one for each core.
     pub threads: usize,
     /// Replace results that are there?
     pub force: bool,
@@ -46,10 +50,14 @@ pub const STATE: &str = "state.h5";
 ///
 /// # Errors
 /// Results that are there already, files that cannot be written, a bed that does not fit
-/// its layers, numbers that run away.
+/// its layers, a machine that is not there or cannot hold the bed, numbers that run away.
 pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summary> {
     check_room(&options.out, options.force)?;
-    check_start(scene, options.threads)?;
+    let chosen = options
+        .backend
+        .choose(scene.start.grains.len(), options.threads)?;
+    let machine = chosen.machine;
+    check_start(scene, &machine)?;
     let plan = plan(scene)?;
     let out = &options.out;
     std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
@@ -57,6 +65,8 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
         title: scene.title.clone(),
         scene: scene.text.clone(),
         seed: scene.seed,
+        backend: machine.backend(),
+        device: machine.describe(),
     };
     let names: Vec<String> = scene
         .phases
@@ -72,6 +82,7 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
     let mut run = Run {
         scene,
         options,
+        machine: &machine,
         stop,
         writer,
         progress: Progress::new(options.quiet, steps.collect()),
@@ -80,6 +91,8 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
         past: scene.past.clone(),
         pace: Pace::default(),
     };
+    run.progress
+        .say(&format!("on {} ({})", machine.describe(), chosen.why));
     let begun = Instant::now();
     let mut state = scene.start.clone();
     let mut phases: Vec<PhaseSummary> = Vec::new();
@@ -88,7 +101,7 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
         match run.phase(number, state) {
             Ok((reached, summary)) => {
                 state = reached;
-                run.progress.phase_done(&summary.to_string());
+                run.progress.say(&summary.to_string());
                 let stopped = summary.outcome == Outcome::Stopped;
                 phases.push(summary);
                 if stopped {
@@ -105,8 +118,12 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
     run.progress.finish();
     run.writer.finish()?;
     match failed {
-        Some(error) => Err(error),
+        Some(error) => Err(error.context(format!(
+            "the run stopped; its results until then are in {}",
+            options.out.display()
+        ))),
         None => Ok(Summary {
+            device: machine.describe(),
             grains: scene.start.grains.len(),
             phases,
             seconds: begun.elapsed().as_secs_f64(),
@@ -129,14 +146,14 @@ fn check_room(out: &Path, force: bool) -> Result<()> {
 }
 
 /// See that the first phase can begin: what is refused here costs no old results.
-fn check_start(scene: &Scene, threads: usize) -> Result<()> {
+fn check_start(scene: &Scene, machine: &Machine) -> Result<()> {
     let phase = &scene.phases[0];
     let reference = scene.past.reference_of(phase);
     let Prepared { model, state, .. } =
         protocol::prepare(scene, phase, scene.start.clone(), reference)
             .with_context(|| format!("phase {}", phase.name))?;
-    let solver = Solver::new(model, state, threads);
-    solver.with_context(|| format!("phase {}", phase.name))?;
+    let engine = Engine::new(machine, model, state);
+    engine.with_context(|| format!("phase {}", phase.name))?;
     Ok(())
 }
 
@@ -182,6 +199,7 @@ fn longest(phase: &Phase, model: &Model, height: f64) -> u64 {
 struct Run<'a> {
     scene: &'a Scene,
     options: &'a Options,
+    machine: &'a Machine,
     stop: &'a AtomicBool,
     writer: Writer,
     progress: Progress,
@@ -220,10 +238,10 @@ impl Run<'_> {
             before: Sums::default(),
             readings: Vec::new(),
         };
-        let mut solver = Solver::new(model, state, self.options.threads).with_context(in_phase)?;
-        let model = Arc::new(solver.model().clone());
+        let mut engine = Engine::new(self.machine, model, state).with_context(in_phase)?;
+        let model = Arc::new(engine.model().clone());
         if number == 0 {
-            let now = Arc::new(solver.snapshot());
+            let now = Arc::new(engine.snapshot().with_context(in_phase)?);
             self.writer
                 .send(bed.frame(&model, &now, intervals::START))?;
         }
@@ -231,11 +249,11 @@ impl Run<'_> {
             let next = self.intervals.next(done).min(watch.next(done)).min(total);
             let goal = next.min(done + self.pace.steps());
             self.pace
-                .time(goal - done, || solver.advance(goal - done))
+                .time(goal - done, || engine.advance(goal - done))
                 .with_context(in_phase)?;
             done = goal;
             self.progress
-                .at(done, solver.model().step, self.pace.steps_per_second());
+                .at(done, engine.model().step, self.pace.steps_per_second());
 
             let mut due = self.intervals.due(done);
             let look = done == watch.next(done - 1);
@@ -243,7 +261,7 @@ impl Run<'_> {
             if !(intervals::any(due) || look || stopped || done == total) {
                 continue;
             }
-            let now = Arc::new(solver.snapshot());
+            let now = Arc::new(engine.snapshot().with_context(in_phase)?);
             let room = measure::wall_height(&model, &now.state, protocol::TOP);
             ensure!(
                 room > now.state.grains.mean_radius(),

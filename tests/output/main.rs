@@ -217,6 +217,8 @@ fn header() -> Header {
         title: "a test".into(),
         scene: String::new(),
         seed: 0,
+        backend: "cpu",
+        device: "a processor".into(),
     }
 }
 

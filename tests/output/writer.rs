@@ -83,6 +83,8 @@ fn start(dir: &Path, plan: &Plan) -> Result<Writer, String> {
         title: "a column".into(),
         scene: "seed = 7\n".into(),
         seed: 7,
+        backend: "cpu",
+        device: "a processor".into(),
     };
     let phases = ["settle", "first shear"].map(String::from);
     Writer::create(

@@ -1,6 +1,7 @@
 //! A run that is killed leaves files that open, with all but its last second in them.
 
 use super::{SMALL, read};
+use experiments::backend::Backend;
 use experiments::run::{Options, run};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -24,6 +25,7 @@ fn a_run_without_end() {
         out: std::env::var_os(OUT)
             .expect("the test below sets it")
             .into(),
+        backend: Backend::Cpu,
         threads: 1,
         force: true,
         quiet: true,

@@ -1,6 +1,7 @@
 //! The ready-made experiments are scenes that run.
 
 use super::read;
+use experiments::backend::Backend;
 use experiments::ready;
 use experiments::run::{Options, run};
 use std::sync::atomic::AtomicBool;
@@ -25,6 +26,7 @@ fn every_ready_made_experiment_runs_a_few_steps_of_every_phase() {
         let folder = tempfile::tempdir().unwrap();
         let options = Options {
             out: folder.path().join("results"),
+            backend: Backend::Cpu,
             threads: 2,
             force: false,
             quiet: true,

@@ -1,6 +1,7 @@
 //! The text that a result carries says what was chosen, and is a scene that gives the same run.
 
 use super::{SMALL, read};
+use experiments::backend::Backend;
 use experiments::ready;
 use experiments::run::{Options, run};
 use experiments::scene::tree::Step;
@@ -154,6 +155,7 @@ fn the_resolved_scene_is_the_same_scene() {
 fn results(scene: &Scene, out: &Path) -> Vec<Vec<u64>> {
     let options = Options {
         out: out.to_path_buf(),
+        backend: Backend::Cpu,
         threads: 1,
         force: false,
         quiet: true,

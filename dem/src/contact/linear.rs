@@ -12,6 +12,7 @@
 //! Differs from `sphere`, whose force at the moment of slip is the static limit.
 //! Projection alone is enough to carry the spring: it shortens ξ by the square of the
 //! rotation in a step, which vanishes with the step.
+//! Twin:       shaders/dem/contact/linear.wgsl
 //! Proof:      tests/verification (friction, impacts, ledger)
 
 use super::turning::{self, Turning};

@@ -8,6 +8,7 @@
 //! ratio of overlap and radius.
 //! Source: LAMMPS 29 Sep 2021, `pair_style granular`; written from its documentation and
 //! from trajectories.
+//! Twin:   shaders/dem/contact/linear_lammps.wgsl
 //! Proof:  tests/verification/lammps/
 
 use super::{ContactLaw, Law, Losses, Memory, Normal, Response, Springs, Touch, Turn};

@@ -3,6 +3,8 @@
 pub mod linear;
 pub mod linear_lammps;
 mod normal;
+#[doc(hidden)]
+pub mod probe;
 mod turning;
 
 pub use linear::{Linear, Sliding, Tension};

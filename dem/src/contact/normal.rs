@@ -2,6 +2,7 @@
 //!
 //! F_n = k_n d - γ_n v_n, clipped at zero unless the law keeps tension.
 //! Source: Cundall and Strack (1979), Géotechnique 29, 47-65.
+//! Twin:   shaders/dem/contact/normal.wgsl
 //! Proof:  tests/verification (restitution, contact time)
 
 use super::{ContactLaw, Law, Losses, Memory, Response, Springs, Tension, Touch, Turn};

@@ -6,6 +6,7 @@
 //! R* = R_i R_j / (R_i + R_j), and R_i at a wall. Springs are carried and reset as the
 //! tangential one is, with a single friction coefficient.
 //! Source:   Luding (2008), Granular Matter 10, 235-246, sections 2.3.2 and 2.3.3.
+//! Twin:     shaders/dem/contact/turning.wgsl
 //! Proof:    tests/verification (spin decay, rolling on an incline)
 
 use super::{Memory, Response, Turn};

@@ -86,24 +86,24 @@ impl Case {
 
     /// Shear `bed` from the start for one measurement.
     pub fn run(self, bed: &Bed, threads: usize, length: Length) -> Result<Sample> {
-        let (model, start) = (self.model(bed), start(bed));
+        let (model, start) = self.start(bed);
         let mut solver = Solver::new(model, start, threads)?;
         solver.advance(length.warm_up)?;
         let clock = Instant::now();
         solver.advance(length.steps)?;
         let seconds = clock.elapsed().as_secs_f64();
 
-        let contacts = solver.snapshot().state.contacts;
-        let pairs = contacts
-            .iter()
-            .filter(|contact| matches!(contact.j, Body::Grain(_)))
-            .count();
         let grains = bed.packing.len() as f64;
         Ok(Sample {
             grain_steps_per_s: grains * length.steps as f64 / seconds,
-            coordination_number: 2.0 * pairs as f64 / grains,
+            coordination_number: Some(coordination_number(&solver.snapshot().state)),
             bytes_per_grain: solver.memory() as f64 / grains,
         })
+    }
+
+    /// What acts, and the state to start from.
+    pub fn start(self, bed: &Bed) -> (Model, State) {
+        (self.model(bed), start(bed))
     }
 
     fn model(self, bed: &Bed) -> Model {
@@ -131,6 +131,16 @@ impl Case {
             ledger: !matches!(self, Self::PosterNoLedger | Self::Frictionless),
         }
     }
+}
+
+/// Mean number of grains that a grain touches.
+pub fn coordination_number(state: &State) -> f64 {
+    let pairs = state
+        .contacts
+        .iter()
+        .filter(|contact| matches!(contact.j, Body::Grain(_)))
+        .count();
+    2.0 * pairs as f64 / state.grains.len() as f64
 }
 
 /// The packing with a linear velocity profile between a held and a driven layer.

@@ -240,7 +240,7 @@ fn read(log: &str, grains: usize, ranks: usize, length: Length) -> Option<Sample
     let grains = grains as f64;
     Some(Sample {
         grain_steps_per_s: grains * length.steps as f64 / seconds,
-        coordination_number,
+        coordination_number: Some(coordination_number),
         bytes_per_grain: megabytes * 1024.0 * 1024.0 * ranks as f64 / grains,
     })
 }
@@ -274,7 +274,7 @@ mod tests {
         };
         let sample = read(log, 1000, 2, length).unwrap();
         assert_eq!(sample.grain_steps_per_s, 12e6);
-        assert_eq!(sample.coordination_number, 4.09);
+        assert_eq!(sample.coordination_number, Some(4.09));
         assert_eq!(sample.bytes_per_grain, 4.0 * 1024.0 * 1024.0 / 1000.0);
         assert!(read("ERROR: Unknown pair style", 1000, 2, length).is_none());
     }

@@ -4,14 +4,17 @@
 //! them; medians and extremes over the rounds are reported.
 
 mod case;
+mod floor;
+mod gpu;
 mod lammps;
 mod numbers;
 mod packing;
 mod report;
 
-use anyhow::{Context, Result, ensure};
-use case::Bed;
-use case::Case;
+use crate::backend::{Backend, Machine, processor};
+use anyhow::{Context, Result, bail, ensure};
+use case::{Bed, Case};
+use floor::Floor;
 use lammps::Lammps;
 use packing::Sizes;
 use report::{Row, Sample};
@@ -20,10 +23,13 @@ use std::path::PathBuf;
 /// What `esker bench speed` measures.
 #[derive(Clone, Debug, clap::Args)]
 pub struct SpeedArgs {
-    /// Numbers of grains, multiples of 1000
-    #[arg(long, value_delimiter = ',', default_value = "1000,10000,100000")]
+    /// Who computes; auto: graphics hardware, or else the CPU
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// Numbers of grains, multiples of 1000 [default: 1000 to 100 000, to 10 000 000 on a GPU]
+    #[arg(long, value_delimiter = ',', value_name = "N")]
     pub grains: Vec<usize>,
-    /// Numbers of threads (and of LAMMPS' ranks) [default: one for each core]
+    /// Numbers of threads of the CPU (and of LAMMPS' ranks) [default: one for each core]
     #[arg(long, value_delimiter = ',', value_name = "N")]
     pub threads: Vec<usize>,
     /// Rounds; each takes every case once
@@ -44,24 +50,43 @@ pub struct SpeedArgs {
 /// whose coordination number falls below 4 (no longer dense, so no measure of one), and
 /// files that cannot be written.
 pub fn speed(args: &SpeedArgs) -> Result<()> {
-    let threads = if args.threads.is_empty() {
-        vec![std::thread::available_parallelism()?.get()]
-    } else {
-        args.threads.clone()
+    for &grains in &args.grains {
+        packing::check_count(grains)?;
+    }
+    // Beds of all sizes are measured, also those that are too small for a GPU to pay.
+    let rows = match args.backend.choose(usize::MAX, 0)?.machine {
+        Machine::Cpu { .. } => on_cpu(args)?,
+        Machine::Gpu(device) => on_gpu(&device, args)?,
+    };
+    if let Some(file) = &args.json {
+        let text = serde_json::to_string_pretty(&rows)? + "\n";
+        std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+    }
+    // Where sizes differ much, many small grains float in the holes between large ones.
+    let dense = |row: &Row| row.case != Case::LogNormal.name();
+    ensure!(
+        rows.iter().filter(|row| dense(row)).all(|row| row
+            .coordination_number
+            .is_none_or(|contacts| contacts >= 4.0)),
+        "a bed fell below 4 contacts a grain: these are not the speeds of a dense bed"
+    );
+    Ok(())
+}
+
+fn on_cpu(args: &SpeedArgs) -> Result<Vec<Row>> {
+    let threads = match args.threads.is_empty() {
+        true => vec![std::thread::available_parallelism()?.get()],
+        false => args.threads.clone(),
     };
     ensure!(
         threads.iter().all(|&t| t > 0),
         "--threads: give 1 or more threads"
     );
-    for &grains in &args.grains {
-        packing::check_count(grains)?;
-    }
     if args.with_lammps {
         lammps::check_installed(threads.iter().any(|&t| t > 1))?;
     }
-
     let mut rows = Vec::new();
-    for &grains in &args.grains {
+    for grains in or(&args.grains, || vec![1000, 10_000, 100_000]) {
         let beds = Sizes::ALL.map(|sizes| Bed::of(sizes, grains));
         let beds = beds.into_iter().collect::<Result<Vec<_>>>()?;
         for &threads in &threads {
@@ -70,19 +95,36 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
             rows.extend(new);
         }
     }
-    if let Some(file) = &args.json {
-        let text = serde_json::to_string_pretty(&rows)? + "\n";
-        std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+    Ok(rows)
+}
+
+fn on_gpu(device: &shaders::Device, args: &SpeedArgs) -> Result<Vec<Row>> {
+    if args.with_lammps {
+        bail!("--with-lammps compares with the CPU; add --backend cpu");
     }
-    // Where sizes differ much, many small grains float in the holes between large ones.
-    let dense = |row: &Row| row.case != Case::LogNormal.name();
-    ensure!(
-        rows.iter()
-            .filter(|row| dense(row))
-            .all(|row| row.coordination_number >= 4.0),
-        "a bed fell below 4 contacts a grain: these are not the speeds of a dense bed"
-    );
-    Ok(())
+    if !device.adapter.is_hardware() {
+        println!(
+            "NO GRAPHICS HARDWARE HERE: {} is software. What follows shows that it works, not how \
+             fast a GPU is; a device is missing.",
+            device.adapter.describe()
+        );
+    }
+    let floor = Floor::measure(device)?;
+    let mut rows = Vec::new();
+    for grains in or(&args.grains, || gpu::sizes(device)) {
+        let new = gpu::measure(device, &floor, grains, args.rounds)?;
+        report::print(&new, args.rounds);
+        rows.extend(new);
+    }
+    Ok(rows)
+}
+
+/// What was asked for, or else the `default`.
+fn or(asked: &[usize], default: impl FnOnce() -> Vec<usize>) -> Vec<usize> {
+    match asked.is_empty() {
+        true => default(),
+        false => asked.to_vec(),
+    }
 }
 
 /// All cases at one number of grains and of threads, alternating; one bed for each of
@@ -107,12 +149,20 @@ fn measure(beds: &[Bed], threads: usize, args: &SpeedArgs) -> Result<Vec<Row>> {
         }
     }
 
+    let device = processor();
     let samples = |case: Case| &own[case as usize].1;
     let one_size = samples(Case::OneSize);
     let own_rows = own.iter().map(|(case, samples)| Row {
         one_size_ratio: (*case == Case::LogNormal)
             .then(|| report::ratio(samples, one_size, Sample::contacts_per_s)),
-        ..Row::new(case.name(), "cpu", &bed(*case).packing, threads, samples)
+        ..Row::new(
+            case.name(),
+            "cpu",
+            &device,
+            &bed(*case).packing,
+            Some(threads),
+            samples,
+        )
     });
     let poster = samples(Case::Poster);
     let peer_rows = peers.iter().map(|(peer, samples)| Row {
@@ -120,8 +170,9 @@ fn measure(beds: &[Bed], threads: usize, args: &SpeedArgs) -> Result<Vec<Row>> {
         ..Row::new(
             &peer.name(),
             "lammps",
+            &device,
             &poster_bed.packing,
-            threads,
+            Some(threads),
             samples,
         )
     });

@@ -1,8 +1,11 @@
 //! How fast this machine steps the grains of a scene: measured on a small cubic packing.
 
+use crate::backend::Machine;
+use crate::engine::Engine;
 use crate::scene::Scene;
+use crate::scene::whole::whole;
 use anyhow::Result;
-use dem::{Grains, Model, Solver, State, WallState};
+use dem::{Grains, Model, State, WallState};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -11,7 +14,7 @@ use std::time::Instant;
 pub struct Cost {
     /// Wall-clock time of a grain-step [s].
     pub grain_step: f64,
-    /// Memory of the solver [bytes].
+    /// Memory of the solver, on the device where there is one [bytes].
     pub bytes: f64,
 }
 
@@ -20,13 +23,13 @@ const GRAINS: usize = 20_000;
 /// How long to measure [s].
 const SECONDS: f64 = 0.5;
 
-/// Measure `model` on `threads` threads (0: all) with grains of the scene's mean size on a
+/// Measure `model` on `machine` with grains of the scene's mean size on a
 /// simple cubic lattice, pressed together so that each has six contacts; a sheared bed has
 /// four to five, and more pairs that are near without touching.
 ///
 /// # Errors
 /// Those of the solver.
-pub fn calibrate(scene: &Scene, model: &Model, threads: usize) -> Result<Cost> {
+pub fn calibrate(scene: &Scene, model: &Model, machine: &Machine) -> Result<Cost> {
     let radius = scene.start.grains.mean_radius();
     let mass = scene.start.grains.mass.iter().sum::<f64>() / scene.start.grains.len() as f64;
     let side = (scene.start.grains.len().min(GRAINS) as f64)
@@ -52,24 +55,27 @@ pub fn calibrate(scene: &Scene, model: &Model, threads: usize) -> Result<Cost> {
         ..State::default()
     };
     let mut model = model.clone();
-    model.domain = dem::Domain {
+    let domain = dem::Domain {
         size: [length; 2],
         periodic: [true; 2],
     };
+    model.domain = whole(domain, &state.grains, Some(length), model.skin);
     model.walls.truncate(state.walls.len());
     for wall in &mut model.walls {
         wall.motion = dem::WallMotion::Held;
     }
     model.drive = None;
-    let mut solver = Solver::new(model, state, threads)?;
-    solver.advance(20)?;
-    let (begun, mut steps) = (Instant::now(), 0);
+    let mut engine = Engine::new(machine, model, state)?;
+    engine.advance(20)?;
+    let (begun, mut steps, mut more) = (Instant::now(), 0, 20);
+    // More and more at a time: a GPU makes steps by the hundred.
     while begun.elapsed().as_secs_f64() < SECONDS {
-        solver.advance(20)?;
-        steps += 20;
+        engine.advance(more)?;
+        steps += more;
+        more += more / 2;
     }
     Ok(Cost {
         grain_step: begun.elapsed().as_secs_f64() / (steps as f64 * count),
-        bytes: solver.memory() as f64 / count,
+        bytes: engine.memory() as f64 / count,
     })
 }

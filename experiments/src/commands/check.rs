@@ -1,7 +1,9 @@
 //! `esker check`: what the numbers of a scene imply, before a step is made.
 
 use super::SceneArgs;
-use super::calibrate::calibrate;
+use super::cost;
+use super::left_out::left_out;
+use crate::backend::{Backend, Machine};
 use crate::protocol;
 use crate::run::expected_steps;
 use crate::scene::{Phase, Scene, Shear};
@@ -9,7 +11,7 @@ use anyhow::Result;
 use clap::Args;
 use dem::contact::Tension;
 use dem::stability::{contact_time, restitution, restitution_scatter};
-use dem::{ContactLaw, Model, Surface, WallMotion};
+use dem::{ContactLaw, WallMotion};
 use std::process::ExitCode;
 
 /// Arguments of `esker check`.
@@ -17,6 +19,9 @@ use std::process::ExitCode;
 pub struct Check {
     #[command(flatten)]
     scene: SceneArgs,
+    /// Who would compute
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
     /// Number of threads for the estimate of the run time [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -28,6 +33,9 @@ pub struct Check {
 /// Everything that is wrong with the scene.
 pub fn check(arguments: &Check) -> Result<ExitCode> {
     let (scene, _) = arguments.scene.read()?;
+    let threads = arguments.threads.map_or(0, usize::from);
+    let grains = scene.start.grains.len();
+    let chosen = arguments.backend.choose(grains, threads)?;
     let facts = Facts::of(&scene);
     println!("{}\n", scene.title);
     bed(&scene, &facts);
@@ -38,8 +46,19 @@ pub fn check(arguments: &Check) -> Result<ExitCode> {
         describe(&scene, phase, &facts);
     }
     println!();
-    cost(&scene, arguments.threads.map_or(0, usize::from))?;
-    left_out(&scene);
+    line(
+        "computed on",
+        &format!("{} ({})", chosen.machine.describe(), chosen.why),
+    );
+    cost::time_and_memory(&scene, &chosen.machine)?;
+    if let Machine::Gpu(device) = &chosen.machine {
+        cost::memory_on_device(&scene, &device.adapter)?;
+        cost::accuracy(&scene, facts.diameter)?;
+    }
+    let out = left_out(&scene, &chosen.machine);
+    if !out.is_empty() {
+        line("left out", &out.join(", "));
+    }
     for warning in scene.warnings() {
         line("warning", &warning);
     }
@@ -76,7 +95,7 @@ impl Facts {
     }
 }
 
-fn line(what: &str, value: &str) {
+pub(super) fn line(what: &str, value: &str) {
     println!("{what:<22}{value}");
 }
 
@@ -233,77 +252,5 @@ fn describe(scene: &Scene, phase: &Phase, facts: &Facts) {
                 &format!("{number:.3e}, {regime} (with the diameter; sphere takes the radius)"),
             );
         }
-    }
-}
-
-fn cost(scene: &Scene, threads: usize) -> Result<()> {
-    let count = scene.start.grains.len() as f64;
-    let mut seconds = 0.0;
-    let mut bytes: f64 = 0.0;
-    for phase in &scene.phases {
-        let cost = calibrate(scene, &protocol::model(scene, phase, 1.0), threads)?;
-        seconds += cost.grain_step * count * expected_steps(scene, phase) as f64;
-        bytes = bytes.max(cost.bytes);
-    }
-    // Beside the solver: the state it began with, and some copies on their way to the files.
-    let copies = 6.0 * 250.0;
-    line(
-        "memory",
-        &format!("about {:.0} MiB", count * (bytes + copies) / 1_048_576.0),
-    );
-    let any = scene.phases.iter().any(|phase| phase.end.at_rest.is_some());
-    let most = if any { "at most " } else { "" };
-    line(
-        "run time",
-        &format!("{most}about {} on this machine", duration(seconds)),
-    );
-    Ok(())
-}
-
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 100.0 => format!("{s:.0} s"),
-        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
-/// What costs nothing because the scene does not need it.
-fn left_out(scene: &Scene) {
-    let models: Vec<Model> = scene
-        .phases
-        .iter()
-        .map(|phase| protocol::model(scene, phase, 1.0))
-        .collect();
-    let never = |test: &dyn Fn(&Model) -> bool| !models.iter().any(test);
-    let linear = |model: &Model, test: &dyn Fn(&dem::contact::Linear) -> bool| matches!(&model.law, ContactLaw::Linear(law) if test(law));
-    let slides = |model: &Model| model.law.slides();
-    let mut out = Vec::new();
-    if never(&slides) {
-        out.push("tangential forces and their springs");
-    }
-    if never(&|m| linear(m, &|law| law.rolling.is_some())) {
-        out.push("rolling resistance");
-    }
-    if never(&|m| linear(m, &|law| law.twisting.is_some())) {
-        out.push("twisting resistance");
-    }
-    if never(&|m| m.walls.iter().any(|wall| wall.surface == Surface::Full)) {
-        out.push("friction at walls");
-    }
-    if never(&|m| m.ledger) {
-        out.push("sums of the energy ledger");
-    }
-    if scene.domain.periodic == [true; 2] {
-        out.push("vertical walls");
-    }
-    let files = scene.output.files.iter();
-    let none: Vec<String> = files
-        .filter(|(_, file)| file.is_none())
-        .map(|(kind, _)| kind.file_name())
-        .collect();
-    out.extend(none.iter().map(String::as_str));
-    if !out.is_empty() {
-        line("left out", &out.join(", "));
     }
 }

@@ -2,10 +2,14 @@
 
 mod calibrate;
 mod check;
+mod cost;
+mod info;
+mod left_out;
 mod run;
 mod scene;
 
 pub use check::{Check, check};
+pub use info::info;
 pub use run::{Run, run};
 pub use scene::SceneArgs;
 

@@ -1,6 +1,7 @@
 //! `esker run`
 
 use super::SceneArgs;
+use crate::backend::Backend;
 use crate::run::{Options, STATE, run as run_scene};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -17,7 +18,10 @@ pub struct Run {
     /// Folder of the results [default: results/NAME]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Number of threads; results do not depend on it [default: one for each core]
+    /// Who computes
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
+    /// Number of threads of the CPU; results do not depend on it [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
     /// Show neither progress nor summary
@@ -42,6 +46,7 @@ pub fn run(arguments: &Run) -> Result<ExitCode> {
             .out
             .clone()
             .unwrap_or_else(|| PathBuf::from("results").join(name)),
+        backend: arguments.backend,
         threads: arguments.threads.map_or(0, usize::from),
         force: arguments.force,
         quiet: arguments.quiet,

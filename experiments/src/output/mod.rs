@@ -29,6 +29,10 @@ pub struct Header {
     pub scene: String,
     /// Seed of the random start.
     pub seed: u64,
+    /// Who computed: `cpu` or `gpu`.
+    pub backend: &'static str,
+    /// Its name.
+    pub device: String,
 }
 
 /// The NetCDF files of a run.

@@ -10,13 +10,15 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub const COMMIT: &str = env!("ESKER_COMMIT");
 
 /// The texts among the global attributes of every file; the seed is a number.
-pub(super) fn texts(header: &Header) -> [(&'static str, String); 6] {
+pub(super) fn texts(header: &Header) -> [(&'static str, String); 8] {
     [
         ("title", header.title.clone()),
         ("source", format!("esker {VERSION} ({COMMIT})")),
         ("version", VERSION.into()),
         ("commit", COMMIT.into()),
         ("machine", machine().into()),
+        ("backend", header.backend.into()),
+        ("device", header.device.clone()),
         ("scene", header.scene.clone()),
     ]
 }

@@ -480,6 +480,8 @@ mod tests {
             title: "a pair".into(),
             scene: "seed = 7\n".into(),
             seed: 7,
+            backend: "cpu",
+            device: "a processor".into(),
         }
     }
 

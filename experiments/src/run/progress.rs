@@ -56,8 +56,8 @@ impl Progress {
         ));
     }
 
-    /// The phase is over, and `line` tells of it.
-    pub fn phase_done(&mut self, line: &str) {
+    /// Print `line` above the bar.
+    pub fn say(&mut self, line: &str) {
         if self.quiet {
             return;
         }

@@ -66,6 +66,8 @@ impl fmt::Display for PhaseSummary {
 /// A run in numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
+    /// Who computed.
+    pub device: String,
     /// Number of grains.
     pub grains: usize,
     /// The phases that ran.
@@ -91,8 +93,8 @@ impl fmt::Display for Summary {
         let speed = steps as f64 * self.grains as f64 / self.seconds;
         writeln!(
             f,
-            "{steps} steps of {} grains in {:.1} s: {speed:.3e} grain-steps/s",
-            self.grains, self.seconds
+            "{steps} steps of {} grains in {:.1} s: {speed:.3e} grain-steps/s on {}",
+            self.grains, self.seconds, self.device
         )?;
         write!(f, "results in {}", self.out.display())
     }

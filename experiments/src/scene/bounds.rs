@@ -94,7 +94,8 @@ pub fn read(root: &Table, made_in: MadeIn) -> Option<Bounds> {
             // A bed may stand between walls farther apart.
             let binds = of_state || periodic[k];
             if binds && (size[k] / made.size[k] - 1.0).abs() > 1e-6 {
-                let (along, own) = (["x", "y"][k], made.size[k]);
+                // As it was stated: whole units of the GPU's positions change digits that nobody wrote.
+                let (along, own) = (["x", "y"][k], made.size[k] as f32);
                 let message = format!(
                     "is {} m along {along}, but the {name} was made in {own} m; leave size out",
                     size[k]

@@ -19,6 +19,7 @@ pub mod reader;
 pub mod time;
 pub mod tree;
 pub mod units;
+pub mod whole;
 
 pub use document::Document;
 pub use output::Output;
@@ -109,6 +110,15 @@ fn read(reader: &Reader) -> Option<Scene> {
     };
     let bounds = bounds::read(&root, made_in);
     let grains = origin.as_ref().map(|origin| origin.grains(seed));
+    let time = time::read(&root);
+    let stated = bounds.map(|bounds| bounds.domain);
+    let bounds = bounds.map(|bounds| match &grains {
+        Some(grains) => bounds::Bounds {
+            domain: whole::whole(bounds.domain, grains, bounds.height, time.skin),
+            ..bounds
+        },
+        None => bounds,
+    });
 
     // Where something above is wrong, numbers that do no harm stand in for it, so that the
     // rest is still checked.
@@ -138,10 +148,9 @@ fn read(reader: &Reader) -> Option<Scene> {
     let [top, bottom] = walls(&root);
     let rough = [top, bottom].map(|surface| surface == Surface::Full);
     let output = output::read(&root, &phases, mean_diameter, rough);
-    let time = time::read(&root);
-    let (origin, grains, bounds) = (origin?, grains?, bounds?);
+    let (origin, grains, bounds, stated) = (origin?, grains?, bounds?, stated?);
     let (output, _) = (output?, law?);
-    if phases.is_empty() || !check_width(reader, &bounds.domain, diameter) {
+    if phases.is_empty() || !check_width(reader, &stated, diameter) {
         return None;
     }
     let start = origin
