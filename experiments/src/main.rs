@@ -36,6 +36,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    // Mesa's layer that chooses a device for others complains on standard error where there is no
+    // display; esker chooses by itself.
+    // SAFETY: no other thread runs yet.
+    unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     let done = match Esker::parse().command {
         Command::Run(arguments) => commands::run(&arguments),
         Command::Check(arguments) => commands::check(&arguments),
