@@ -1,8 +1,11 @@
 //! The statistics of `validation/plane_shear.rs`, on the GPU: bulk friction and solid fraction of 1000
 //! sheared spheres, in the same bands.
 //!
-//! In software a run takes a minute and more, so it is asked for:
+//! In software a run takes minutes, so it is asked for:
 //! `cargo test --release -p tests --test gpu -- --ignored --nocapture shear_as`
+//!
+//! Measured on lavapipe (two cores, 490 s for both): friction 0.351 ± 0.006 and fraction 0.5955 ± 0.0003
+//! at 0.3, 0.361 ± 0.009 and 0.5835 ± 0.0006 at 0.5.
 
 use crate::lab::Suite;
 use dem::gpu;
