@@ -31,7 +31,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="where the three runs are, or are to be")
     parser.add_argument("--esker", default="esker", help="the program")
-    parser.add_argument("--threads", default="0", help="for each run; 0: one for each core")
+    parser.add_argument("--threads", help="for each run; default: one for each core")
     options = parser.parse_args()
 
     print("| `phase.settle.friction` | fraction | peak friction | ultimate friction | dilation | fraction then |")
@@ -55,7 +55,8 @@ def shear_of(options, name, friction):
     folder = options.folder / name
     if not (folder / "series.nc").exists():
         command = [options.esker, "run", "small-shear", "--out", folder, "--quiet"]
-        command += ["--threads", options.threads]
+        if options.threads:
+            command += ["--threads", options.threads]
         if friction is not None:
             command += ["--set", f"phase.settle.friction={friction}"]
         subprocess.run(command, check=True)

@@ -220,9 +220,10 @@ fn memory(device: &Device) {
         let told = Memory::of(&model, &state).unwrap();
         let solver = gpu::Solver::new(device, model, state).unwrap();
         let (told, taken) = (told.bytes, solver.memory());
-        // Beside rows of grains and entries there are the numbers of the scene and of steps.
+        // Beside rows of grains and entries there are the numbers of the scene and of steps, 17 KiB;
+        // a row of 16 bytes a grain that is forgotten adds 8.
         println!("{told} bytes told, {taken} taken");
-        assert!((0..32 << 10).contains(&(taken as i64 - told as i64)));
+        assert!((0..22 << 10).contains(&(taken as i64 - told as i64)));
     }
 }
 

@@ -1,6 +1,5 @@
 //! Walls and driven layer as the host sees them: where they are now.
 
-use super::loading::axis_of;
 use super::look::Look;
 use super::solver::Solver;
 use crate::{Drive, WallMotion, WallState};
@@ -64,10 +63,8 @@ impl Look {
                 velocity += kick * self.drive_acceleration(solver, &forces);
                 return (0.0, velocity);
             }
-            let mut side = 1.0;
-            if let Ok((_, s)) = axis_of(&solver.model.walls[k]) {
-                side = f64::from(s);
-            }
+            // Normals lie along axes.
+            let side = solver.model.walls[k].normal.element_sum();
             if let WallMotion::Stress(load) = solver.model.walls[k].motion {
                 let time = solver.start.time + last as f64 * dt;
                 let pushed = load.stress(time) * load.area;

@@ -33,13 +33,13 @@ impl Memory {
         // Histories, and rows of grains, move along with a new order through this.
         let moved = four(remembers, touching).max(four(true, grains * walls.max(2)));
         let arrays = [
-            grains * (2 * 32 + 2 * 32 + 16), // places, motions, owns
-            four(slides, 2 * grains),        // turned, orientations
-            8 * grains + 4 * entries,        // lists, neighbours
-            four(slides, entries),           // springs
-            four(ledger, entries),           // forces
-            four(turns, entries),            // rollings
-            four(turns && ledger, entries),  // couples
+            grains * (2 * 32 + 2 * 32 + 16 + 16), // places, motions, owns, remains
+            four(slides, 2 * grains),             // turned, orientations
+            8 * grains + 4 * entries,             // lists, neighbours
+            four(slides, entries),                // springs
+            four(ledger, entries),                // forces
+            four(turns, entries),                 // rollings
+            four(turns && ledger, entries),       // couples
             // The same at walls.
             four(ledger, grains * walls),
             four(full, grains * walls),
@@ -84,8 +84,8 @@ impl Memory {
 pub fn moved_by_a_step(model: &Model, entries: f64, touching: f64) -> f64 {
     let (slides, turns, ledger) = (model.law.slides(), model.law.turns(), model.ledger);
     let is = |is: bool, bytes: f64| if is { bytes } else { 0.0 };
-    // Place and motion are read and written, mass and list read.
-    let own = 2.0 * 64.0 + 16.0 + 8.0 + is(slides, 2.0 * 16.0);
+    // Place, motion and what remains of kicks are read and written, mass and list read.
+    let own = 2.0 * (64.0 + 16.0) + 16.0 + 8.0 + is(slides, 2.0 * 16.0);
     // Springs are read and written; the ledger's forces from one side.
     let history = is(slides, 32.0) + is(turns, 32.0) + is(ledger, 16.0) + is(turns && ledger, 16.0);
     own + 4.0 * entries + history * touching

@@ -5,7 +5,7 @@ use super::control::Control;
 use super::numbers::{self, Numbers};
 use super::search::{self, Search};
 use super::steps::{Step, bind_search};
-use super::sums::{First, Totals};
+use super::sums::Totals;
 use crate::{Error, Ledger, Model, Outside, State};
 use glam::DVec3;
 use shaders::{Bound, Device, Flags, Kernel, compose};
@@ -30,8 +30,9 @@ pub struct Solver {
     pub(super) dispatches: Vec<Bound>,
     /// As last heard of.
     pub(super) control: Control,
-    /// Forces of the start, and sums that were taken off the device.
-    pub(super) first: First,
+    /// Forces of the start on the walls, the held and the driven layer [N].
+    pub(super) forces_at_start: Vec<f64>,
+    /// Sums that were taken off the device.
     pub(super) totals: Totals,
     /// Steps since sums were taken.
     pub(super) since_taken: u64,
@@ -93,7 +94,7 @@ impl Solver {
             outside: None,
             dispatches: Vec::new(),
             control: Control::default(),
-            first: First::default(),
+            forces_at_start: Vec::new(),
             totals: Totals::new(numbers.slots),
             numbers,
             since_taken: 0,
@@ -115,7 +116,7 @@ impl Solver {
         }
         let reading = self.look()?;
         // Sums over steps leave out the forces of the start.
-        self.first = reading.first(self);
+        self.forces_at_start = reading.forces_now(self);
         self.ledger_start = reading.energies_at_start(self);
         Ok(())
     }

@@ -7,12 +7,6 @@ use super::wide::Wide;
 use crate::{Contact, Drive, Grains, Horizontal, Ledger, Sums, WallMotion};
 use std::ops::Range;
 
-/// Forces of the start: on walls, held and driven layer [N].
-#[derive(Clone, Debug, Default)]
-pub(super) struct First {
-    pub forces: Vec<f64>,
-}
-
 /// Sums over steps that were taken off the device before they could overflow there, in parts
 /// of their units: the answer does not depend on how often.
 #[derive(Clone, Debug)]
@@ -66,13 +60,6 @@ impl Look {
         slots.map(|slot| self.force(solver, slot)).collect()
     }
 
-    /// Forces of the start.
-    pub(super) fn first(&self, solver: &Solver) -> First {
-        First {
-            forces: self.forces_now(solver),
-        }
-    }
-
     /// Sums over steps 1 to n. The device has those over 0 to n - 2, and the last in its slot.
     pub(super) fn sums_at(&self, solver: &Solver, steps: u64, now: &[f64]) -> Sums {
         let slots = solver.numbers.slots;
@@ -82,7 +69,7 @@ impl Look {
             }
             let before = self.force(solver, slots.totals() + k);
             let last = self.force(solver, slots.of_step(steps - 1) + k);
-            before + last - solver.first.forces[k] + now[k]
+            before + last - solver.forces_at_start[k] + now[k]
         };
         Sums {
             steps,
@@ -116,7 +103,7 @@ impl Look {
             ledger.work_outside = lost(3);
             // Between the first force and this one, each drift takes half of the force before
             // it and half of the one after.
-            let between = |k: usize, sum: f64| sum + 0.5 * (solver.first.forces[k] - now[k]);
+            let between = |k: usize, sum: f64| sum + 0.5 * (solver.forces_at_start[k] - now[k]);
             for (k, wall) in model.walls.iter().enumerate() {
                 ledger.work_walls += match wall.motion {
                     WallMotion::Held => 0.0,
