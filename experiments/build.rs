@@ -8,7 +8,7 @@ fn main() {
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo::rerun-if-changed={log}");
     }
-    for sources in ["src", "../dem/src"] {
+    for sources in ["src", "../dem/src", "../lbm/src"] {
         println!("cargo::rerun-if-changed={sources}");
     }
     let commit = git(&[

@@ -21,6 +21,8 @@ pub(crate) struct Boundary {
     pub wall_force: Vec<f64>,
     pub held_force: f64,
     pub driven_force: f64,
+    /// Forces of a companion on walls along minus their normals [N].
+    pub companion_force: Vec<f64>,
     /// Sums of these forces since the solver began.
     pub sums: Sums,
     /// Work on the grains since the solver began [J].
@@ -52,7 +54,8 @@ impl Loading<'_> {
             WallMotion::Stress(load) => {
                 let pushed = load.stress(self.time(boundary.sums.steps)) * load.area;
                 let damped = load.damping * boundary.walls[k].velocity;
-                (pushed - boundary.wall_force[k] - damped) / load.mass
+                let together = boundary.companion_force[k];
+                (pushed - boundary.wall_force[k] - together - damped) / load.mass
             }
         }
     }

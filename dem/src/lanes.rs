@@ -10,19 +10,23 @@ use std::ops::{Add, Div, Mul, Sub};
 /// One row of memory: three components and one more number, aligned for one vector load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
-pub(crate) struct Row(pub [f64; 4]);
+pub struct Row(pub [f64; 4]);
 
 impl Row {
+    /// Four zeros.
     pub const ZERO: Self = Self([0.0; 4]);
 
+    /// Three components and one more number.
     pub fn new(v: glam::DVec3, w: f64) -> Self {
         Self([v.x, v.y, v.z, w])
     }
 
+    /// The three components.
     pub fn xyz(&self) -> glam::DVec3 {
         glam::DVec3::new(self.0[0], self.0[1], self.0[2])
     }
 
+    /// The fourth number.
     pub fn w(&self) -> f64 {
         self.0[3]
     }

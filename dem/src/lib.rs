@@ -7,6 +7,7 @@
 mod barrier;
 mod boundary;
 mod check;
+mod companion;
 pub mod contact;
 mod cut;
 pub mod gpu;
@@ -35,9 +36,12 @@ mod sweep;
 mod view;
 mod walls;
 
+pub use companion::{Bed, Companion, Moved, Threads};
 pub use contact::ContactLaw;
 pub use grains::{Constraint, Grains, Horizontal};
+pub use lanes::Row;
 pub use model::{Domain, Drive, Model, StressLoad, Surface, Wall, WallMotion};
+pub use shared::Shared;
 pub use snapshot::{Ledger, Snapshot, Sums};
 pub use solver::{Error, Outside, Solver};
 pub use state::{Body, Contact, History, State, WallState};

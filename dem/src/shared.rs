@@ -5,13 +5,14 @@ use std::ops::Range;
 
 /// An array of which each thread writes its own range between two barriers, and which all
 /// read after the next one.
-pub(crate) struct Shared<T>(Box<[UnsafeCell<T>]>);
+pub struct Shared<T>(Box<[UnsafeCell<T>]>);
 
 // SAFETY: access from several threads goes through `read` and `write`, whose callers
 // promise that nobody reads what another one writes.
 unsafe impl<T: Send + Sync> Sync for Shared<T> {}
 
 impl<T> Shared<T> {
+    /// Take over `values`.
     pub fn new(values: Vec<T>) -> Self {
         Self(values.into_iter().map(UnsafeCell::new).collect())
     }

@@ -2,12 +2,13 @@
 
 use crate::barrier::Barrier;
 use crate::boundary::{Boundary, Loading};
+use crate::companion::Companion;
 use crate::grains::Horizontal;
 use crate::kernels::Kernels;
 use crate::lanes::Row;
 use crate::slab::{Loss, Slab};
 use crate::sorted::{Lasting, Sorted, grains_of};
-use crate::step::{Crew, Stop};
+use crate::step::{Crew, Stage, Stop};
 use crate::{Ledger, Model, State};
 use glam::DVec3;
 use std::sync::Mutex;
@@ -27,6 +28,8 @@ pub struct Solver {
     driven_mass: f64,
     /// Forces and torques from outside in sorted order, while there are any.
     pub(crate) outside: Option<(Vec<Row>, Vec<Row>)>,
+    /// Has a companion joined?
+    pub(crate) joined: bool,
     skin: f64,
     searches: u64,
     /// Step of the last search.
@@ -43,6 +46,9 @@ pub enum Error {
     /// The description or the state cannot be right.
     #[error("{0}")]
     Invalid(String),
+    /// What goes along with the grains cannot go on.
+    #[error("{0}")]
+    Companion(String),
     /// The device of a solver on the GPU fails.
     #[error(transparent)]
     Device(#[from] shaders::Error),
@@ -121,6 +127,7 @@ impl Solver {
         let walls = state.walls.clone();
         let boundary = Boundary {
             wall_force: vec![0.0; walls.len()],
+            companion_force: vec![0.0; walls.len()],
             sums: crate::Sums {
                 wall_force: vec![0.0; walls.len()],
                 ..Default::default()
@@ -146,6 +153,7 @@ impl Solver {
             boundary,
             driven_mass,
             outside: None,
+            joined: false,
             skin,
             searches: 1,
             searched_at: 0,
@@ -164,7 +172,7 @@ impl Solver {
         for slab in &mut slabs {
             let walls = slab.walls.iter().map(|wall| wall.slots.clone());
             let (pairs, walls) = (slab.slots.clone(), walls.collect::<Vec<_>>());
-            crew.push_own(slab, &self.boundary, 0.0);
+            crew.push_own(slab, &self.boundary, 0.0, |_| {});
             // Measuring must not change what the contacts remember: a sliding one lies on its
             // limit, and half of them would stick by the change of velocities over half a step.
             let touching = Slab::touches(&slab.touching, slab.pair_count);
@@ -215,7 +223,7 @@ impl Solver {
     /// [`Error::Unstable`] when the numbers run away.
     pub fn advance(&mut self, steps: u64) -> Result<(), Error> {
         self.change_outside(None);
-        self.walk(steps)
+        self.walk_alone(steps)
     }
 
     /// Advance by `steps` time steps under constant `outside` forces.
@@ -226,12 +234,12 @@ impl Solver {
     pub fn advance_with(&mut self, steps: u64, outside: Outside) -> Result<(), Error> {
         let outside = self.sort_outside(outside)?;
         self.change_outside(Some(outside));
-        self.walk(steps)
+        self.walk_alone(steps)
     }
 
     /// Outside forces change at this instant, half a step ahead of the velocities: the half
     /// step until now belongs to the old ones, the whole kick to come is made by the new ones.
-    fn change_outside(&mut self, new: Option<(Vec<Row>, Vec<Row>)>) {
+    pub(crate) fn change_outside(&mut self, new: Option<(Vec<Row>, Vec<Row>)>) {
         let old = std::mem::replace(&mut self.outside, new);
         if old.is_none() && self.outside.is_none() {
             return;
@@ -256,15 +264,36 @@ impl Solver {
         }
     }
 
-    fn walk(&mut self, steps: u64) -> Result<(), Error> {
+    fn walk_alone(&mut self, steps: u64) -> Result<(), Error> {
+        if self.joined {
+            let what = "this solver has a companion: advance them together, or begin anew";
+            return Err(Error::Invalid(what.into()));
+        }
+        self.walk(steps, &mut ())
+    }
+
+    pub(crate) fn walk<C: Companion>(
+        &mut self,
+        steps: u64,
+        companion: &mut C,
+    ) -> Result<(), Error> {
         let until = self.boundary.sums.steps + steps;
-        let mut moved = false;
+        let mut stage = Stage::Begun;
         while self.boundary.sums.steps < until {
-            match self.dispatch(until, moved) {
+            match self.dispatch(until, stage, companion) {
                 Stop::Done => {}
                 Stop::Search { speed } => {
                     self.search(speed)?;
-                    moved = true;
+                    companion
+                        .arrange(&self.bed_after(1))
+                        .map_err(Error::Companion)?;
+                    stage = Stage::Moved;
+                }
+                Stop::Due => {
+                    companion
+                        .settle(&self.bed_after(1))
+                        .map_err(Error::Companion)?;
+                    stage = Stage::Followed;
                 }
             }
         }
@@ -272,7 +301,7 @@ impl Solver {
     }
 
     /// Let the threads walk.
-    fn dispatch(&mut self, until: u64, moved: bool) -> Stop {
+    fn dispatch<C: Companion>(&mut self, until: u64, stage: Stage, companion: &C) -> Stop {
         let slabs: Vec<Mutex<Slab>> = self.sorted.slabs.drain(..).map(Mutex::new).collect();
         let barrier = Barrier::new(self.threads);
         let speeds: Vec<AtomicU64> = (0..self.threads).map(|_| AtomicU64::new(0)).collect();
@@ -281,7 +310,8 @@ impl Solver {
             let mut slab = slabs[thread]
                 .lock()
                 .expect("each thread locks only its own slab");
-            crew.walk(thread, &mut slab, self.boundary.clone(), until, moved)
+            let boundary = self.boundary.clone();
+            crew.walk(thread, &mut slab, boundary, until, stage, companion)
         };
         let (boundary, stop) = match &self.pool {
             None => walk(0),

@@ -2,6 +2,7 @@
 
 use crate::barrier::Barrier;
 use crate::boundary::{Boundary, Loading};
+use crate::companion::{Companion, Moved, Threads};
 use crate::kernels::Kernels;
 use crate::lanes::Row;
 use crate::motion::{Own, TURN_EVERY, turned};
@@ -57,23 +58,36 @@ pub(crate) enum Stop {
         /// Bound on the speed of the fastest grain [m/s].
         speed: f64,
     },
+    /// The companion wants to be alone.
+    Due,
+}
+
+/// How far a step has got.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    Begun,
+    /// Grains and walls have moved.
+    Moved,
+    /// The companion has followed them.
+    Followed,
 }
 
 impl Crew<'_> {
     /// Make steps until `until` are made since the solver began, or a search is needed.
-    /// `moved`: grains have moved already, begin with the forces.
-    pub fn walk(
+    /// The first one goes on from `stage`.
+    pub fn walk<C: Companion>(
         &self,
         thread: usize,
         slab: &mut Slab,
         mut boundary: Boundary,
         until: u64,
-        mut moved: bool,
+        mut stage: Stage,
+        companion: &C,
     ) -> (Boundary, Stop) {
         let _guard = self.barrier.guard();
         let step = self.loading.model.step;
         while boundary.sums.steps < until {
-            if !moved {
+            if stage == Stage::Begun {
                 boundary.advance(self.loading);
                 let speed = self.move_own(slab, &boundary);
                 self.speeds[thread].store(speed.to_bits(), Ordering::Relaxed);
@@ -87,8 +101,38 @@ impl Crew<'_> {
                     return (boundary, Stop::Search { speed });
                 }
             }
-            moved = false;
-            self.push_own(slab, &boundary, step);
+            if C::ACTIVE {
+                let threads = Threads {
+                    index: thread,
+                    count: self.speeds.len(),
+                    barrier: self.barrier,
+                };
+                let moved = Moved {
+                    step: boundary.sums.steps + 1,
+                    // SAFETY: rows are written before the last barrier, and next after another.
+                    position: unsafe { self.rows.position.read() },
+                    // SAFETY: as above.
+                    velocity: unsafe { self.rows.velocity.read() },
+                    walls: &boundary.walls,
+                };
+                if stage != Stage::Followed {
+                    companion.follow(&moved, &threads);
+                    if companion.due(moved.step) {
+                        return (boundary, Stop::Due);
+                    }
+                }
+                self.push_own(slab, &boundary, step, |slab| {
+                    let own = slab.own.clone();
+                    let force = &mut slab.force[..own.len()];
+                    companion.push(&moved, &threads, own, force);
+                });
+                for (k, force) in boundary.companion_force.iter_mut().enumerate() {
+                    *force = companion.wall_force(k);
+                }
+            } else {
+                self.push_own(slab, &boundary, step, |_| {});
+            }
+            stage = Stage::Begun;
             self.barrier.wait();
             // SAFETY: gauges are written before this barrier, and next after another one.
             let values = unsafe { self.gauges.values.read() };
@@ -142,8 +186,14 @@ impl Crew<'_> {
     }
 
     /// Contact forces on own grains, and their shares of the gauges. `step` is the time
-    /// over which springs grow.
-    pub fn push_own(&self, slab: &mut Slab, boundary: &Boundary, step: f64) {
+    /// over which springs grow. `together` adds what else pushes the grains.
+    pub fn push_own(
+        &self,
+        slab: &mut Slab,
+        boundary: &Boundary,
+        step: f64,
+        together: impl FnOnce(&mut Slab),
+    ) {
         let model = self.loading.model;
         // SAFETY: rows are written before the last barrier, and next after another one.
         let view = unsafe {
@@ -166,6 +216,7 @@ impl Crew<'_> {
             self.kernels
                 .wall(&view, slab, k, wall, boundary.walls[k], gauge);
         }
+        together(slab);
         self.constrain(slab);
     }
 

@@ -1,6 +1,8 @@
 //! Who computes a scene: the CPU or a GPU. The choice, and its reasons.
 
-use anyhow::{Context, Result};
+use crate::scene::Scene;
+use crate::scene::water::Precision;
+use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
 use shaders::{Adapter, Choice, Device, adapters};
 use sysinfo::{CpuRefreshKind, RefreshKind, System};
@@ -21,6 +23,14 @@ pub enum Backend {
 /// as it takes to start it, some 10 us; that is what a few threads of a CPU need for a step of a
 /// thousand grains.
 pub const FEWEST: usize = 1000;
+
+/// Cells of water from which on [`Backend::Auto`] takes a GPU: what a few threads step in some
+/// 100 us, several times what it takes to start a step on a GPU.
+pub const FEWEST_CELLS: usize = 20_000;
+
+/// Why no GPU computes grains with water between them.
+pub const ON_CPU: &str = "grains with water between them are computed on the CPU alone, so far; \
+                          write --backend cpu, or take [water] out of the scene";
 
 /// Who computes.
 #[derive(Clone, Debug)]
@@ -44,12 +54,73 @@ pub struct Chosen {
 }
 
 impl Backend {
+    /// The machine for `scene`; `threads` of the CPU, 0: one for each core.
+    ///
+    /// # Errors
+    /// A GPU that is asked for and is not there, does not open, or has no water between grains:
+    /// never another machine instead.
+    pub fn choose_for(self, scene: &Scene, threads: usize) -> Result<Chosen> {
+        match scene.water {
+            Some(_) => self.choose_for_wet(threads),
+            None => self.choose(scene.start.grains.len(), threads),
+        }
+    }
+
     /// The machine for a bed of `grains`; `threads` of the CPU, 0: one for each core.
     ///
     /// # Errors
     /// A GPU that is asked for and is not there, or does not open: never another machine
     /// instead.
     pub fn choose(self, grains: usize, threads: usize) -> Result<Chosen> {
+        let few = (grains < FEWEST)
+            .then(|| format!("fewer than {FEWEST} grains are faster here than on a GPU"));
+        self.take(few, &format!("{FEWEST} grains or more"), threads)
+    }
+
+    /// The machine for grains with water between them: a CPU.
+    ///
+    /// # Errors
+    /// A GPU that is asked for.
+    fn choose_for_wet(self, threads: usize) -> Result<Chosen> {
+        ensure!(self != Self::Gpu, "--backend gpu: {ON_CPU}");
+        let mut chosen = Self::Cpu.take(None, "", threads)?;
+        if self == Self::Auto {
+            chosen.why = "grains with water between them are computed here alone, so far".into();
+        }
+        Ok(chosen)
+    }
+
+    /// The machine for water in so many `cells`; `threads` of the CPU, 0: one for each core.
+    ///
+    /// # Errors
+    /// As [`choose`](Self::choose), and double precision that is asked of a GPU.
+    pub fn choose_for_water(
+        self,
+        cells: usize,
+        precision: Precision,
+        threads: usize,
+    ) -> Result<Chosen> {
+        let double = precision == Precision::F64;
+        ensure!(
+            self != Self::Gpu || !double,
+            "--backend gpu: the scene asks for f64, and a GPU computes water in f32; write \
+             water.precision = \"f32\" (--set water.precision=f32), or --backend cpu"
+        );
+        let few = match double {
+            true => Some("the scene asks for water in f64, which a GPU has not".into()),
+            false => (cells < FEWEST_CELLS)
+                .then(|| format!("fewer than {FEWEST_CELLS} cells are faster here than on a GPU")),
+        };
+        self.take(
+            few,
+            &format!("{FEWEST_CELLS} cells or more, in f32"),
+            threads,
+        )
+    }
+
+    /// The machine where the CPU is better because of what is `few`, if it is, and a GPU where
+    /// there is `enough`.
+    fn take(self, few: Option<String>, enough: &str, threads: usize) -> Result<Chosen> {
         let cpu = |why: &str| Chosen {
             machine: Machine::Cpu {
                 threads: match threads {
@@ -77,16 +148,14 @@ impl Backend {
                 let Some(adapter) = adapters().into_iter().find(Adapter::is_hardware) else {
                     return Ok(cpu("no graphics hardware here"));
                 };
-                if grains < FEWEST {
-                    return Ok(cpu(&format!(
-                        "fewer than {FEWEST} grains are faster here than on a GPU"
-                    )));
+                if let Some(few) = few {
+                    return Ok(cpu(&few));
                 }
                 let device = Device::open_adapter(adapter)
                     .context("use the CPU with --backend cpu; the GPU does not open")?;
                 Ok(Chosen {
                     machine: Machine::Gpu(device),
-                    why: format!("graphics hardware, and {FEWEST} grains or more"),
+                    why: format!("graphics hardware, and {enough}"),
                 })
             }
         }
@@ -110,14 +179,6 @@ impl Machine {
             Self::Gpu(device) => device.adapter.describe(),
         }
     }
-}
-
-/// The largest array that `adapter` holds [bytes].
-pub fn largest_array(adapter: &Adapter) -> u64 {
-    let limits = &adapter.limits;
-    limits
-        .max_buffer_size
-        .min(limits.max_storage_buffer_binding_size)
 }
 
 /// Name of the processor, or its architecture where the system does not tell.

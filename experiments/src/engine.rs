@@ -1,8 +1,18 @@
 //! The solver of a run, on whichever machine: all that the rest of the program knows of it.
 
-use crate::backend::{Machine, largest_array};
-use anyhow::{Result, ensure};
-use dem::gpu::{self, memory::Memory};
+mod wet;
+
+pub use wet::{Wet, stiffness};
+
+use crate::backend::{Machine, ON_CPU};
+use crate::output::pores::PoreReading;
+use crate::protocol::Past;
+use crate::scene::{Phase, Pores, Scene};
+use anyhow::{Result, bail, ensure};
+use dem::gpu::{
+    self,
+    memory::{Bounds, Memory},
+};
 use dem::{Error, Model, Snapshot, State};
 
 /// Grains in motion.
@@ -11,9 +21,33 @@ pub enum Engine {
     Cpu(Box<dem::Solver>),
     /// On a GPU, in fixed point and single precision.
     Gpu(Box<gpu::Solver>),
+    /// With water between them, on the CPU.
+    Wet(Box<Wet>),
 }
 
 impl Engine {
+    /// The solver of `phase`: with water only where there is some, as it was in the `past`. A
+    /// skeleton so stiff [Pa], if that is known.
+    ///
+    /// # Errors
+    /// What cannot be computed, or not on this machine, with the remedy.
+    pub fn of_phase(
+        scene: &Scene,
+        phase: &Phase,
+        machine: &Machine,
+        model: Model,
+        state: State,
+        past: &Past,
+        stiffness: Option<f64>,
+    ) -> Result<Self> {
+        let (Some(pores), Some(edges)) = (&scene.water, &phase.water) else {
+            return Self::new(machine, model, state);
+        };
+        let water = pores.model(edges, stiffness);
+        let before = past.water.as_ref().map(|past| &past.state);
+        Self::wet(machine, model, state, pores, water, before)
+    }
+
     /// Take over `state` under `model`. Periodic lengths are whole units of the GPU's positions
     /// ([`crate::scene::whole`]), or the GPU refuses.
     ///
@@ -27,6 +61,12 @@ impl Engine {
             Machine::Gpu(device) => {
                 let domain = model.domain;
                 let (grains, memory) = (state.grains.len(), Memory::of(&model, &state)?);
+                // Said before anything is allocated, where it is known.
+                let most = memory.most_grains(grains, Bounds::of(&device.adapter));
+                ensure!(
+                    grains as u64 <= most,
+                    too_little(grains, &memory, &device.adapter)
+                );
                 let solver = gpu::Solver::new(device, model, state);
                 let solver = solver.map_err(|error| match error {
                     Error::Device(shaders::Error::Memory(_)) => anyhow::Error::new(error)
@@ -46,14 +86,44 @@ impl Engine {
         }
     }
 
+    /// Take over `state` under `model`, its pores filled with `water` in the state `before` or at
+    /// rest.
+    ///
+    /// # Errors
+    /// What cannot be computed, or not on this machine, with the remedy.
+    pub fn wet(
+        machine: &Machine,
+        model: Model,
+        state: State,
+        pores: &Pores,
+        water: coupling::Model,
+        before: Option<&coupling::State>,
+    ) -> Result<Self> {
+        let Machine::Cpu { threads } = machine else {
+            bail!(ON_CPU);
+        };
+        let wet = Wet::new(pores.reach, model, state, water, before, *threads)?;
+        Ok(Self::Wet(Box::new(wet)))
+    }
+
     /// Advance by `steps` time steps.
     ///
     /// # Errors
-    /// Numbers that run away, a device that fails.
-    pub fn advance(&mut self, steps: u64) -> Result<(), Error> {
+    /// Numbers that run away, a device that fails, a bed that water cannot be in any more.
+    pub fn advance(&mut self, steps: u64) -> Result<()> {
         match self {
-            Self::Cpu(solver) => solver.advance(steps),
-            Self::Gpu(solver) => solver.advance(steps),
+            Self::Cpu(solver) => solver.advance(steps)?,
+            Self::Gpu(solver) => solver.advance(steps)?,
+            Self::Wet(bed) => bed.advance(steps)?,
+        }
+        Ok(())
+    }
+
+    /// The water between the grains, if there is any.
+    pub fn water(&self) -> Option<PoreReading> {
+        match self {
+            Self::Wet(bed) => Some(bed.reading()),
+            Self::Cpu(_) | Self::Gpu(_) => None,
         }
     }
 
@@ -65,6 +135,7 @@ impl Engine {
         match self {
             Self::Cpu(solver) => Ok(solver.snapshot()),
             Self::Gpu(solver) => solver.snapshot(),
+            Self::Wet(bed) => Ok(bed.grains().snapshot()),
         }
     }
 
@@ -73,6 +144,7 @@ impl Engine {
         match self {
             Self::Cpu(solver) => solver.model(),
             Self::Gpu(solver) => solver.model(),
+            Self::Wet(bed) => bed.grains().model(),
         }
     }
 
@@ -81,21 +153,24 @@ impl Engine {
         match self {
             Self::Cpu(solver) => solver.memory() as u64,
             Self::Gpu(solver) => solver.memory(),
+            Self::Wet(bed) => bed.grains().memory() as u64,
         }
     }
 }
 
 /// What to say where `grains` do not fit on `adapter`.
 fn too_little(grains: usize, memory: &Memory, adapter: &shaders::Adapter) -> String {
+    let bounds = Bounds::of(adapter);
     format!(
-        "{grains} grains take about {:.1} GiB on the GPU, {:.0} MiB of it in one array. {} holds \
-         at most {:.0} MiB in one array, enough for about {} grains. Use fewer, or the CPU with \
-         --backend cpu",
+        "{grains} grains take about {:.1} GiB on the GPU, {:.0} MiB of it in one binding. {} holds \
+         at most {:.0} MiB in one binding and {} bindings, enough for about {} grains where there \
+         is memory for them. Use fewer, or the CPU with --backend cpu",
         (memory.bytes + memory.reading) as f64 / GIB,
         memory.largest as f64 / MIB,
         adapter.info.name,
-        largest_array(adapter) as f64 / MIB,
-        memory.most_grains(grains, largest_array(adapter)),
+        bounds.binding as f64 / MIB,
+        bounds.arrays,
+        memory.most_grains(grains, bounds),
     )
 }
 

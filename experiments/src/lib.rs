@@ -11,3 +11,4 @@ pub mod ready;
 pub mod run;
 pub mod scene;
 pub mod start;
+pub mod water;

@@ -40,7 +40,14 @@ fn main() -> ExitCode {
     // display; esker chooses by itself.
     // SAFETY: no other thread runs yet.
     unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
-    let done = match Esker::parse().command {
+    let command = Esker::parse().command;
+    // Whoever reads what is printed may have seen enough, as `head` does. A run has files to finish.
+    #[cfg(unix)]
+    if !matches!(command, Command::Run(_)) {
+        // SAFETY: the default action in place of Rust's; no handler of ours runs.
+        unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
+    }
+    let done = match command {
         Command::Run(arguments) => commands::run(&arguments),
         Command::Check(arguments) => commands::check(&arguments),
         Command::List => commands::list(),

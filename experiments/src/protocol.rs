@@ -9,6 +9,9 @@ use dem::{
 };
 use glam::DVec3;
 
+/// Solid fraction at which a bed is expected to settle.
+pub const SETTLED: f64 = 0.6;
+
 /// Index of the top wall in [`Model::walls`].
 pub const TOP: usize = 1;
 
@@ -52,6 +55,19 @@ pub struct Past {
     pub strain: f64,
     /// The phase that the state is in the middle of; none: it is at the end of one.
     pub unfinished: Option<Unfinished>,
+    /// The water between the grains; none: they were dry.
+    pub water: Option<PastWater>,
+}
+
+/// The water that came with a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PastWater {
+    /// Number of cells along x, y, z.
+    pub cells: [usize; 3],
+    /// Pressure, flux, vapour, loads of the grains.
+    pub state: coupling::State,
+    /// Stiffness of the skeleton, if it was known [Pa].
+    pub stiffness: Option<f64>,
 }
 
 impl Past {
@@ -128,7 +144,7 @@ pub fn expected_height(scene: &Scene) -> f64 {
     }
     let grains = &start.grains;
     let volume: f64 = (0..grains.len()).map(|k| grains.volume(k)).sum();
-    volume / (0.6 * scene.domain.area())
+    volume / (SETTLED * scene.domain.area())
 }
 
 /// Way of the driven layer along x [m], the mean of its grains; zero without one.

@@ -1,23 +1,27 @@
 //! Runs a scene: phase by phase, advance and look, until the protocol is done.
 
 mod bed;
-mod intervals;
-mod pace;
-mod progress;
+pub(crate) mod intervals;
+pub(crate) mod pace;
+pub(crate) mod progress;
 mod rest;
 mod summary;
+pub(crate) mod water;
 
 pub use summary::{Outcome, PhaseSummary, Summary};
 
-use crate::backend::{Backend, Machine};
+use crate::backend::{Backend, Chosen, Machine};
 use crate::engine::Engine;
+use crate::output::pores::Cells;
 use crate::output::state::Saved;
 use crate::output::{self, FileKind, Header, Plan, Writer};
 use crate::protocol::{self, Past, Prepared, Reference, Unfinished};
-use crate::scene::{self, Phase, Scene};
+use crate::scene::output::File;
+use crate::scene::{Phase, Scene};
 use anyhow::{Context, Error, Result, bail, ensure};
 use bed::Bed;
 use dem::{Drive, Model, State, Sums, measure};
+use enum_map::EnumMap;
 use intervals::Intervals;
 use pace::Pace;
 use progress::Progress;
@@ -53,18 +57,30 @@ pub const STATE: &str = "state.h5";
 /// its layers, a machine that is not there or cannot hold the bed, numbers that run away.
 pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summary> {
     check_room(&options.out, options.force)?;
-    let chosen = options
-        .backend
-        .choose(scene.start.grains.len(), options.threads)?;
-    let machine = chosen.machine;
-    check_start(scene, &machine)?;
+    let chosen = options.backend.choose_for(scene, options.threads)?;
+    run_on(&chosen, scene, options, stop)
+}
+
+/// The same on a machine that was chosen before.
+///
+/// # Errors
+/// Those of [`run`], but for that of the choice.
+pub fn run_on(
+    chosen: &Chosen,
+    scene: &Scene,
+    options: &Options,
+    stop: &AtomicBool,
+) -> Result<Summary> {
+    check_room(&options.out, options.force)?;
+    let machine = &chosen.machine;
+    check_start(scene, machine)?;
     let plan = plan(scene)?;
     let out = &options.out;
     std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
     let header = Header {
         title: scene.title.clone(),
         scene: scene.text.clone(),
-        seed: scene.seed,
+        seed: Some(scene.seed),
         backend: machine.backend(),
         device: machine.describe(),
     };
@@ -74,7 +90,7 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
         .map(|phase| phase.name.clone())
         .collect();
     let writer = Writer::create(out, &header, &plan, &names, &scene.start.grains)?;
-    remove_others(out, &scene.output)?;
+    remove_others(out, &scene.output.files)?;
     let steps = scene
         .phases
         .iter()
@@ -82,11 +98,11 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
     let mut run = Run {
         scene,
         options,
-        machine: &machine,
+        machine,
         stop,
         writer,
         progress: Progress::new(options.quiet, steps.collect()),
-        intervals: Intervals::new(&scene.output, scene.step),
+        intervals: Intervals::new(&scene.output.files, scene.step),
         header,
         past: scene.past.clone(),
         pace: Pace::default(),
@@ -133,7 +149,7 @@ pub fn run(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<Summar
 }
 
 /// See that the folder holds no result.
-fn check_room(out: &Path, force: bool) -> Result<()> {
+pub(crate) fn check_room(out: &Path, force: bool) -> Result<()> {
     let names = FileKind::all().map(FileKind::file_name);
     let mut paths = names.chain([STATE.into()]).map(|name| out.join(name));
     if let (Some(first), false) = (paths.find(|path| path.exists()), force) {
@@ -152,15 +168,17 @@ fn check_start(scene: &Scene, machine: &Machine) -> Result<()> {
     let Prepared { model, state, .. } =
         protocol::prepare(scene, phase, scene.start.clone(), reference)
             .with_context(|| format!("phase {}", phase.name))?;
-    let engine = Engine::new(machine, model, state);
+    // Measuring takes long, and is refused nothing.
+    let stiffness = scene.past.water.as_ref().and_then(|past| past.stiffness);
+    let engine = Engine::of_phase(scene, phase, machine, model, state, &scene.past, stiffness);
     engine.with_context(|| format!("phase {}", phase.name))?;
     Ok(())
 }
 
 /// Remove old results that this run does not replace, so that no folder holds two runs. An old
 /// state stays until the new one replaces it: this run may have started from it.
-fn remove_others(out: &Path, output: &scene::Output) -> Result<()> {
-    let others = output.files.iter().filter(|(_, file)| file.is_none());
+pub(crate) fn remove_others(out: &Path, files: &EnumMap<FileKind, Option<File>>) -> Result<()> {
+    let others = files.iter().filter(|(_, file)| file.is_none());
     for path in others
         .map(|(kind, _)| out.join(kind.file_name()))
         .filter(|p| p.exists())
@@ -177,6 +195,10 @@ fn plan(scene: &Scene) -> Result<Plan> {
     Ok(Plan {
         variables: files.map(|_, file| file.map(|file| file.variables)),
         profile_edges: scene.profile_edges().map_err(Error::msg)?,
+        cells: scene.water.as_ref().map(|water| Cells {
+            count: water.cells,
+            spacing: water.spacing,
+        }),
     })
 }
 
@@ -230,7 +252,7 @@ impl Run<'_> {
         // Steps of this phase that were made before it was stopped.
         let mut done = ((state.time - reference.time) / model.step).round() as u64;
         let total = longest(phase, &model, height).max(done.saturating_add(1));
-        self.progress.begin(number, phase, total);
+        self.progress.begin(number, &phase.name, total);
         let mut watch = RestWatch::new(phase, &model, &state);
         let mut bed = Bed {
             number,
@@ -238,12 +260,21 @@ impl Run<'_> {
             before: Sums::default(),
             readings: Vec::new(),
         };
-        let mut engine = Engine::new(self.machine, model, state).with_context(in_phase)?;
+        let stiffness = water::stiffness(self.scene, phase, &model, &state, &self.past)
+            .with_context(in_phase)?;
+        let (scene, machine) = (self.scene, self.machine);
+        let mut engine =
+            Engine::of_phase(scene, phase, machine, model, state, &self.past, stiffness)
+                .with_context(in_phase)?;
+        if let Engine::Wet(wet) = &engine {
+            self.progress
+                .say(&format!("{:>12}: {}", phase.name, wet.report()));
+        }
         let model = Arc::new(engine.model().clone());
         if number == 0 {
             let now = Arc::new(engine.snapshot().with_context(in_phase)?);
             self.writer
-                .send(bed.frame(&model, &now, intervals::START))?;
+                .send(bed.frame(&model, &now, engine.water(), intervals::START))?;
         }
         loop {
             let next = self.intervals.next(done).min(watch.next(done)).min(total);
@@ -289,7 +320,8 @@ impl Run<'_> {
                 due = self.intervals.last();
             }
             if intervals::any(due) {
-                self.writer.send(bed.frame(&model, &now, due))?;
+                self.writer
+                    .send(bed.frame(&model, &now, engine.water(), due))?;
                 bed.read(due, &now);
             }
             if let Some(outcome) = outcome {
@@ -299,6 +331,7 @@ impl Run<'_> {
                         phase: phase.name.clone(),
                         reference,
                     }),
+                    water: water::past(&engine, stiffness),
                 };
                 let saved = Saved {
                     state: now.state.clone(),
@@ -306,7 +339,7 @@ impl Run<'_> {
                     past: self.past.clone(),
                 };
                 output::state::save(&self.options.out.join(STATE), &saved, &self.header)?;
-                let summary = bed.summary(&model, phase, outcome, done, &now);
+                let summary = bed.summary(&model, phase, outcome, done, &now, engine.water());
                 return Ok((saved.state, summary));
             }
         }

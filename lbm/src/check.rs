@@ -1,6 +1,6 @@
 //! Is a description possible at all?
 
-use crate::{Ends, Error, Field, Model, Side, State};
+use crate::{Bed, Ends, Error, Field, Model, Side, State};
 
 pub(crate) fn refuse<T>(what: String) -> Result<T, Error> {
     Err(Error::Invalid(what))
@@ -168,7 +168,7 @@ pub(crate) fn check_thickness(model: &Model, thickness: f64) -> Result<(), Error
             "thickness {thickness} m of the cells must be positive"
         ));
     }
-    let darcy = |bed: &crate::Bed| bed.forchheimer.is_none();
+    let darcy = |bed: &Bed| bed.forchheimer.is_none();
     if thickness != model.spacing && (model.inertia || !model.bed.as_ref().is_some_and(darcy)) {
         return refuse(format!(
             "cells of {} m by {thickness} m in height are no cubes: that is possible only in a \
@@ -178,4 +178,28 @@ pub(crate) fn check_thickness(model: &Model, thickness: f64) -> Result<(), Error
         ));
     }
     Ok(())
+}
+
+/// Refuse sources [1/s] that are not one for each cell of a bed, or no numbers.
+pub(crate) fn check_source(model: &Model, source: &[f64]) -> Result<(), Error> {
+    if model.bed.is_none() {
+        return refuse("free water takes no sources: describe a bed of porosity 1".into());
+    }
+    let count: usize = model.cells.iter().product();
+    if source.len() != count || !source.iter().all(|rate| rate.is_finite()) {
+        return refuse(format!(
+            "{} sources for {count} cells: there must be a finite one for each",
+            source.len()
+        ));
+    }
+    Ok(())
+}
+
+/// Refuse a bed that has other parts than that of the model.
+pub(crate) fn check_other_bed(model: &Model, bed: &Bed) -> Result<(), Error> {
+    let same = |old: &Bed| old.forchheimer.is_some() == bed.forchheimer.is_some();
+    match model.bed.as_ref().is_some_and(same) {
+        true => Ok(()),
+        false => refuse("a bed, or its Forchheimer's drag, cannot come or go".into()),
+    }
 }

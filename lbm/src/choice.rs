@@ -4,15 +4,15 @@
 //! - acoustic: ρ₀ = ρ/φ (of the mean porosity; ρ where there is free water), Δt = Δx/c with
 //!   S = 3 in the cells of the least storage;
 //! - diffusive: Δt from D, and ρ₀ free: as small as S ≥ 3 allows, but large enough for
-//!   σ ≤ 10, above which D3Q19 smooths at the scale of cells whatever the permeability.
+//!   σ ≤ 10, above which pressure is smoothed at the scale of cells whatever the permeability.
 
 use crate::lanes::Real;
 use crate::limits::{DAMPING_LEAST, length, shortest_time};
 use crate::scaling::STORAGE_LEAST;
 use crate::{Error, Model, Regime, Scaling};
 
-/// The drag σ per step above which pressure is smoothed at the scale of cells, by a third at
-/// four cells a wave (twice as fast at σ = 100).
+/// The drag σ per step above which τ⁺ would not follow it any more (`scaling.rs`), and pressure
+/// would be smoothed at the scale of cells: twice as fast at σ = 100 and four cells a wave.
 const DRAG_MOST: f64 = 10.0;
 /// Room for cells that get lower while running.
 const STORAGE_ROOM: f64 = 1.25;

@@ -1,5 +1,6 @@
 //! The hot loops of a run, chosen once: by law, and by processor.
 
+use crate::Model;
 use crate::collide::{Cell, Coefficients, Free, Law, Moments, Porous};
 use crate::lanes::private::Number;
 use crate::lanes::{Lanes, Real};
@@ -14,6 +15,20 @@ pub(crate) struct Parts {
     pub force: bool,
     pub forchheimer: bool,
     pub source: bool,
+}
+
+impl Parts {
+    /// What the law of `model` has, but for sources, which may come and go.
+    pub fn of(model: &Model) -> Self {
+        let bed = model.bed.as_ref();
+        Self {
+            porous: bed.is_some(),
+            inertia: model.inertia,
+            force: model.acceleration != [0.0; 3],
+            forchheimer: bed.is_some_and(|bed| bed.forchheimer.is_some()),
+            source: false,
+        }
+    }
 }
 
 type Sweep<T> = unsafe fn(&Coefficients<T>, &Populations<T>, bool, &[Span]);
@@ -180,7 +195,7 @@ mod tests {
     use crate::collide::equilibrium;
     use crate::grid::Grid;
     use crate::lattice::Direction;
-    use crate::{Bed, Ends, Field, Fluid, Model};
+    use crate::{Bed, Ends, Field, Fluid};
 
     /// Some steps in a periodic box of rough populations, for each law.
     fn run<T: Real>(parts: Parts, vectors: bool) -> Vec<f64> {

@@ -4,10 +4,13 @@
 //! takes both, is told to advance by n steps, and is read through a [`Snapshot`]. It works in
 //! `f32` or `f64`, on populations that are deviations from rest, in one array. What the numbers
 //! imply for the lattice is in its [`Scaling`], which refuses what cannot be stable or accurate.
+//! [`gpu`] has the same solver on graphics devices.
 
 mod check;
 mod choice;
+mod clock;
 mod collide;
+pub mod gpu;
 mod grid;
 mod kernels;
 mod lanes;
@@ -21,6 +24,7 @@ mod scaling;
 mod signal;
 mod snapshot;
 mod solver;
+mod start;
 mod state;
 mod step;
 

@@ -24,7 +24,7 @@ use std::ops::Range;
 
 /// What answers a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Answer {
+pub(crate) enum Answer {
     /// A solid at rest.
     Solid,
     /// The lower or upper side of an axis.
@@ -158,7 +158,7 @@ fn place(grid: &Grid, at: [usize; 3], direction: Direction) -> u32 {
 }
 
 /// Does the link end at something? At what?
-fn answer(
+pub(crate) fn answer(
     model: &Model,
     grid: &Grid,
     fluid: &[bool],

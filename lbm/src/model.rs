@@ -30,6 +30,26 @@ pub struct Model {
     pub speed: f64,
 }
 
+impl Model {
+    /// Is there fluid in a cell? One entry for each.
+    pub(crate) fn fluid_cells(&self) -> Vec<bool> {
+        match self.solid.is_empty() {
+            true => vec![true; self.cells.iter().product()],
+            false => self.solid.iter().map(|solid| !solid).collect(),
+        }
+    }
+
+    /// Is there a solid cell?
+    pub(crate) fn has_solids(&self) -> bool {
+        self.solid.contains(&true)
+    }
+
+    /// Are there walls at the ends of x, y and z?
+    pub(crate) fn walled(&self) -> [bool; 3] {
+        [0, 1, 2].map(|axis| matches!(self.ends[axis], Ends::Walls(..)))
+    }
+}
+
 /// A liquid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fluid {

@@ -123,6 +123,39 @@ impl<T: Real> Populations<T> {
         }
     }
 
+    /// The sum of what arrived at each cell of the domain, before step `odd`, row by row.
+    ///
+    /// # Safety
+    /// Nobody writes.
+    pub unsafe fn contents(&self, odd: bool, to: &mut [f64]) {
+        let (first, second) = self.pairs(odd);
+        let [nx, ny, nz] = self.grid.cells;
+        for z in 0..nz {
+            for y in 0..ny {
+                let start = (z * ny + y) * nx;
+                let to = &mut to[start..start + nx];
+                let row = self.grid.row(y, z);
+                for (x, sum) in to.iter_mut().enumerate() {
+                    // SAFETY: a place of the lattice, which nobody writes; so below.
+                    *sum = unsafe { (*self.rest().add(row + x)).double() };
+                }
+                for pair in 0..PAIRS {
+                    let [_, py, pz] = self.grid.neighbour([0, y, z], C[pair]);
+                    let far = self.grid.row(py, pz);
+                    for (x, sum) in to.iter_mut().enumerate() {
+                        let next = shift(x, C[pair][0], self.grid.extent[0]);
+                        // SAFETY: as above.
+                        let pair = unsafe {
+                            let forward = (*first[pair].add(row + x)).double();
+                            forward + (*second[pair].add(far + next)).double()
+                        };
+                        *sum += pair;
+                    }
+                }
+            }
+        }
+    }
+
     /// What arrived at a cell, before step `odd`.
     ///
     /// # Safety

@@ -50,9 +50,20 @@ pub struct Scaling {
 
 /// Storage below which populations at rest would have to be negative.
 pub(crate) const STORAGE_LEAST: f64 = 3.0;
-/// τ⁺ - 1/2 where the viscosity is that of the lattice: the reach of a shear, √((τ⁺ - 1/2)/3σ),
-/// stays below a fifth of a cell.
-const TAU_RANGE: [f64; 2] = [0.02, 0.5];
+/// τ⁺ - 1/2 over σ where the viscosity is that of the lattice. A wave of pressure with κ radians
+/// a cell then decays by 1/S over (σ/2)/(1 - cos κ) + (τ⁺ - 1/2) - σ/4 a step, which is κ²/Sσ to
+/// fourth order; twice or half of it leaves 5 % at eight cells a wave. The reach of a shear,
+/// √((τ⁺ - 1/2)/3σ), is a quarter of a cell.
+/// Proof: lbm/tests/verification/porous.rs
+const TAU_OVER_DRAG: f64 = 1.0 / 6.0;
+/// Bounds of the same. At the lower one a wave over 64 cells that drag leaves alone loses 4e-4 of
+/// its height in a period.
+const TAU_RANGE: [f64; 2] = [0.001, 2.0];
+/// The least τ⁺ - 1/2 where free water carries sound: its own viscosity would be as good as none.
+const TAU_FREE: f64 = 0.02;
+/// The part of a difference in pressure between cells that may pass while the bed still counts
+/// as undrained.
+const UNDRAINED: f64 = 0.01;
 
 impl Scaling {
     /// The numbers of a lattice of this step [s] and density [kg/m³].
@@ -90,10 +101,10 @@ impl Scaling {
             drag
         };
         let true_tau = 3.0 * fluid.viscosity * step / (density * dx * dx);
-        let lattice_tau = (drag[0] / 12.0).clamp(TAU_RANGE[0], TAU_RANGE[1]);
+        let lattice_tau = (TAU_OVER_DRAG * drag[0]).clamp(TAU_RANGE[0], TAU_RANGE[1]);
         let (tau, magic) = match regime {
             Regime::Incompressible => (true_tau, 3.0 / 16.0),
-            Regime::Acoustic if extremes.free_cells => (true_tau.max(TAU_RANGE[0]), 3.0 / 16.0),
+            Regime::Acoustic if extremes.free_cells => (true_tau.max(TAU_FREE), 3.0 / 16.0),
             _ => (lattice_tau, 0.25),
         };
         Self {
@@ -157,6 +168,19 @@ impl Scaling {
     /// Content gained per step for a source [1/s].
     pub(crate) fn source(&self, rate: f64, stretch: f64) -> f64 {
         rate * self.step * stretch
+    }
+
+    /// Does so little pressure diffuse in `duration` [s] that each cell keeps its water? Then
+    /// nothing can be learnt from solving for the flow: the bed is undrained, and pressure follows
+    /// from what each cell alone is squeezed by.
+    ///
+    /// Between two cells the part D t/Δx² of their difference in pressure passes; up to one per
+    /// cent, the error that rounding may make too, it counts as none. Free water and
+    /// incompressible flow are never undrained.
+    pub fn is_undrained(&self, duration: f64) -> bool {
+        // Without drag nothing diffuses, and water flows all the same.
+        let slow = |diffusivity: f64| diffusivity * duration < UNDRAINED * self.step;
+        self.regime != Regime::Incompressible && self.drag[0] > 0.0 && slow(self.diffusivity[1])
     }
 
     /// Kinematic viscosity of the lattice [m²/s]; more than that of the water where sheared

@@ -1,15 +1,16 @@
 //! The solver: it is told to advance by n steps, and is then read.
 
 use crate::check::{check_state, refuse};
-use crate::collide::{Cell, Coefficients, equilibrium};
+use crate::clock::Clock;
+use crate::collide::Coefficients;
 use crate::grid::Grid;
 use crate::kernels::{Kernels, Parts};
 use crate::lanes::Real;
-use crate::lattice::PAIRS;
 use crate::links::Links;
 use crate::populations::Populations;
+use crate::start::Start;
 use crate::step::{Crew, shares, spans};
-use crate::{Bed, Ends, Model, Scaling, State};
+use crate::{Bed, Model, Scaling, State};
 use std::sync::Barrier;
 
 /// Water on a lattice of `f32` or `f64`.
@@ -17,9 +18,8 @@ pub struct Solver<T: Real> {
     pub(crate) model: Model,
     pub(crate) scaling: Scaling,
     /// None: the caller's thread does all.
-    pool: Option<rayon::ThreadPool>,
-    /// Time of step zero [s].
-    start: f64,
+    pub(crate) pool: Option<rayon::ThreadPool>,
+    clock: Clock,
     pub(crate) steps: u64,
     /// Height of the cells over the spacing.
     pub(crate) stretch: f64,
@@ -40,6 +40,9 @@ pub enum Error {
     /// The description or the state cannot be right, or what they ask for cannot be had.
     #[error("{0}")]
     Invalid(String),
+    /// The device of a solver on the GPU fails.
+    #[error(transparent)]
+    Device(#[from] shaders::Error),
     /// The numbers ran away.
     #[error("step {step}: {what}")]
     Unstable {
@@ -48,6 +51,20 @@ pub enum Error {
         /// What was seen, and the remedy.
         what: String,
     },
+}
+
+impl Error {
+    /// Populations are no numbers.
+    pub(crate) fn run_away(step: u64, scaling: &Scaling) -> Self {
+        Self::Unstable {
+            step,
+            what: format!(
+                "populations are no numbers any more; give a step shorter than {:.3e} s or a \
+                 finer spacing",
+                scaling.step
+            ),
+        }
+    }
 }
 
 /// Cells below which another thread costs more than it brings.
@@ -65,8 +82,7 @@ impl<T: Real> Solver<T> {
         crate::check::check(&model)?;
         check_state(&model, &state)?;
         let scaling = Scaling::choose::<T>(&model, state.thickness)?;
-        let walled = [0, 1, 2].map(|axis| matches!(model.ends[axis], Ends::Walls(..)));
-        let grid = Grid::new(model.cells, walled);
+        let grid = Grid::new(model.cells, model.walled());
         let count = model.cells.iter().product::<usize>();
         if u32::try_from(grid.places()).is_err() {
             return refuse(format!("{:?} cells are too many", model.cells));
@@ -81,24 +97,12 @@ impl<T: Real> Solver<T> {
                 Some(pool.map_err(|e| Error::Invalid(format!("no {threads} threads: {e}")))?)
             }
         };
-        let fluid: Vec<bool> = match model.solid.is_empty() {
-            true => vec![true; count],
-            false => model.solid.iter().map(|solid| !solid).collect(),
-        };
-        let parts = Parts {
-            porous: model.bed.is_some(),
-            inertia: model.inertia,
-            force: model.acceleration != [0.0; 3],
-            forchheimer: model
-                .bed
-                .as_ref()
-                .is_some_and(|bed| bed.forchheimer.is_some()),
-            source: false,
-        };
+        let fluid = model.fluid_cells();
+        let parts = Parts::of(&model);
         let mut solver = Self {
             scaling,
             pool,
-            start: state.time,
+            clock: Clock::new(state.time, scaling.step),
             steps: 0,
             stretch: state.thickness / model.spacing,
             populations: Populations::new(grid),
@@ -136,7 +140,7 @@ impl<T: Real> Solver<T> {
 
     /// Simulated time [s].
     pub fn time(&self) -> f64 {
-        self.start + self.steps as f64 * self.scaling.step
+        self.clock.after(self.steps as f64)
     }
 
     /// Memory of the populations for each cell of the domain.
@@ -146,72 +150,29 @@ impl<T: Real> Solver<T> {
 
     /// What follows from the height of the cells.
     fn fill_constants(&mut self) {
-        let (scaling, stretch) = (&self.scaling, self.stretch);
-        let k = &mut self.coefficients;
-        k.omega_even = T::of(1.0 / scaling.tau_even);
-        k.omega_odd = T::of(1.0 / scaling.tau_odd);
-        let force = scaling.force(self.model.acceleration, stretch);
-        k.half_force = force.map(|f| T::of(0.5 * f));
-        k.drag_stretch = [T::of(1.0 / stretch), T::of(stretch)];
-        k.flatness = T::of(1.0 / stretch);
+        self.coefficients
+            .fill_constants(&self.model, &self.scaling, self.stretch);
     }
 
     /// What follows from the bed.
     fn fill_fields(&mut self) {
-        let scaling = &self.scaling;
-        let k = &mut self.coefficients;
-        let Some(bed) = &self.model.bed else {
-            return;
-        };
-        let grid = self.populations.grid;
-        let fill = |to: &mut Vec<T>, of: &dyn Fn(usize) -> f64| {
-            // Places between rows are never read, but must be numbers.
-            to.resize(grid.places(), T::default());
-            for (cell, at) in grid.all().enumerate() {
-                to[grid.place(at)] = T::of(of(cell));
-            }
-        };
-        fill(&mut k.inverse_storage, &|cell| {
-            1.0 / scaling.storage(bed.porosity.at(cell))
-        });
-        fill(&mut k.half_drag, &|cell| {
-            0.5 * scaling.drag(bed.permeability.at(cell))
-        });
-        if let Some(b) = &bed.forchheimer {
-            fill(&mut k.half_forchheimer, &|cell| {
-                0.5 * scaling.forchheimer(b.at(cell))
-            });
-        }
-        if self.model.inertia {
-            fill(&mut k.inverse_porosity, &|cell| 1.0 / bed.porosity.at(cell));
-        }
+        self.coefficients
+            .fill_fields(&self.model, &self.scaling, &self.populations.grid);
     }
 
     fn fill_populations(&mut self, state: &State) {
-        let pressure_unit = self.scaling.pressure_unit();
-        let flux_unit = self.scaling.flux_unit(self.stretch);
+        let start = Start {
+            model: &self.model,
+            scaling: &self.scaling,
+            coefficients: &self.coefficients,
+            state,
+        };
         let grid = self.populations.grid;
         for (cell, at) in grid.all().enumerate() {
-            if !self.fluid[cell] {
-                continue;
+            if self.fluid[cell] {
+                let arrived = start.arrived(cell, grid.place(at));
+                self.populations.write(at, self.steps % 2 == 1, &arrived);
             }
-            let arrived = match state.populations.get(cell) {
-                Some(populations) => {
-                    let mut next = populations.iter().map(|&f| T::of(f));
-                    let mut take = || next.next().expect("a cell has 19 populations");
-                    Cell {
-                        rest: take(),
-                        forward: [(); PAIRS].map(|()| take()),
-                        backward: [(); PAIRS].map(|()| take()),
-                    }
-                }
-                None => {
-                    let pressure = state.pressure[cell] / pressure_unit;
-                    let j = [0, 1, 2].map(|axis| state.flux[cell][axis] / flux_unit[axis]);
-                    equilibrium(&self.coefficients, &self.model, grid.place(at), pressure, j)
-                }
-            };
-            self.populations.write(at, self.steps % 2 == 1, &arrived);
         }
     }
 
@@ -231,22 +192,10 @@ impl<T: Real> Solver<T> {
     /// Those of [`advance`](Self::advance), and [`Error::Invalid`] for sources that are not one
     /// for each cell, or no numbers, or in free water.
     pub fn advance_with(&mut self, steps: u64, source: &[f64]) -> Result<(), Error> {
-        if self.model.bed.is_none() {
-            return refuse("free water takes no sources: describe a bed of porosity 1".into());
-        }
-        if source.len() != self.fluid.len() || !source.iter().all(|rate| rate.is_finite()) {
-            return refuse(format!(
-                "{} sources for {} cells: there must be a finite one for each",
-                source.len(),
-                self.fluid.len()
-            ));
-        }
-        let grid = self.populations.grid;
-        let to = &mut self.coefficients.source;
-        to.resize(grid.places(), T::default());
-        for (&rate, at) in source.iter().zip(grid.all()) {
-            to[grid.place(at)] = T::of(self.scaling.source(rate, self.stretch));
-        }
+        crate::check::check_source(&self.model, source)?;
+        let grid = &self.populations.grid;
+        self.coefficients
+            .fill_source(source, &self.scaling, self.stretch, grid);
         self.walk(self.kernels_with_source, steps)
     }
 
@@ -261,7 +210,7 @@ impl<T: Real> Solver<T> {
             model: &self.model,
             scaling: &self.scaling,
             stretch: self.stretch,
-            start: self.start,
+            clock: self.clock,
             barrier: &barrier,
         };
         let range = self.steps..self.steps + steps;
@@ -274,14 +223,7 @@ impl<T: Real> Solver<T> {
         self.steps += steps;
         match self.populations.finite() {
             true => Ok(()),
-            false => Err(Error::Unstable {
-                step: self.steps,
-                what: format!(
-                    "populations are no numbers any more; give a step shorter than {:.3e} s or a \
-                     finer spacing",
-                    self.scaling.step
-                ),
-            }),
+            false => Err(Error::run_away(self.steps, &self.scaling)),
         }
     }
 
@@ -306,10 +248,7 @@ impl<T: Real> Solver<T> {
     /// [`Error::Invalid`] for a bed that cannot be right, or for which this lattice is not
     /// stable or accurate.
     pub fn set_bed(&mut self, bed: Bed) -> Result<(), Error> {
-        let same = |old: &Bed| old.forchheimer.is_some() == bed.forchheimer.is_some();
-        if !self.model.bed.as_ref().is_some_and(same) {
-            return refuse("a bed, or its Forchheimer's drag, cannot come or go".into());
-        }
+        crate::check::check_other_bed(&self.model, &bed)?;
         let old = self.model.bed.replace(bed);
         let scaling = crate::check::check(&self.model)
             .and_then(|()| self.scaling.with_bed::<T>(&self.model, self.stretch));

@@ -1,5 +1,6 @@
 //! The order of one step, as every thread of a solver walks through it.
 
+use crate::clock::Clock;
 use crate::collide::Coefficients;
 use crate::grid::Grid;
 use crate::kernels::Kernels;
@@ -20,8 +21,8 @@ pub(crate) struct Crew<'a, T> {
     pub model: &'a Model,
     pub scaling: &'a Scaling,
     pub stretch: f64,
-    /// Time of step zero [s].
-    pub start: f64,
+    /// When steps happen.
+    pub clock: Clock,
     pub barrier: &'a Barrier,
 }
 
@@ -42,8 +43,9 @@ impl<T: Real> Crew<'_, T> {
             };
             self.meet();
             // What is emitted passes a side half a step later.
-            let time = self.start + (step as f64 + 0.5) * self.scaling.step;
-            let given = |axis, upper| self.given(axis, upper, time);
+            let time = self.clock.after(step as f64 + 0.5);
+            let given =
+                |axis, upper| given(self.model, self.scaling, self.stretch, (axis, upper), time);
             // SAFETY: all have emitted, and go on after the next barrier.
             unsafe {
                 self.links
@@ -59,27 +61,32 @@ impl<T: Real> Crew<'_, T> {
             self.barrier.wait();
         }
     }
+}
 
-    /// What a side of the box gives at `time` [s], lattice units.
-    fn given(&self, axis: usize, upper: bool, time: f64) -> Given {
-        let side = match &self.model.ends[axis] {
-            Ends::Walls(_, side) if upper => side,
-            Ends::Walls(side, _) => side,
-            Ends::Periodic => unreachable!("no link ends at a periodic side"),
-        };
-        let unit = self.scaling.flux_unit(self.stretch);
-        match side {
-            Side::FreeSlip => Given::Flux([0.0; 3]),
-            Side::NoSlip(velocity) => Given::Flux([0, 1, 2].map(|a| velocity[a] / unit[a])),
-            Side::Pressure(signal) => {
-                Given::Pressure(signal.at(time) / self.scaling.pressure_unit())
-            }
-            Side::Flux(signal) => {
-                let inward = if upper { -1.0 } else { 1.0 };
-                let mut j = [0.0; 3];
-                j[axis] = inward * signal.at(time) / unit[axis];
-                Given::Flux(j)
-            }
+/// What a side of the box gives at `time` [s], lattice units of cells `stretch` spacings high.
+pub(crate) fn given(
+    model: &Model,
+    scaling: &Scaling,
+    stretch: f64,
+    (axis, upper): (usize, bool),
+    time: f64,
+) -> Given {
+    let side = match &model.ends[axis] {
+        Ends::Walls(_, side) if upper => side,
+        Ends::Walls(side, _) => side,
+        // No link ends there.
+        Ends::Periodic => &Side::FreeSlip,
+    };
+    let unit = scaling.flux_unit(stretch);
+    match side {
+        Side::FreeSlip => Given::Flux([0.0; 3]),
+        Side::NoSlip(velocity) => Given::Flux([0, 1, 2].map(|a| velocity[a] / unit[a])),
+        Side::Pressure(signal) => Given::Pressure(signal.at(time) / scaling.pressure_unit()),
+        Side::Flux(signal) => {
+            let inward = if upper { -1.0 } else { 1.0 };
+            let mut j = [0.0; 3];
+            j[axis] = inward * signal.at(time) / unit[axis];
+            Given::Flux(j)
         }
     }
 }

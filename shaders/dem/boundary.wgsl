@@ -34,7 +34,7 @@ const WORKS: u32 = TOTALS + FORCES;
 // Friction, viscosity, rolling, work of outside forces: in many places, since all workgroups
 // add to them and only the host reads them. Then those of a reading.
 const LOSSES: u32 = WORKS + WALLS;
-const SPREAD: u32 = 32u;
+const SPREAD: u32 = #{SPREAD}u;
 const LOSSES_READ: u32 = LOSSES + 4u * SPREAD;
 
 // As all threads of a workgroup see them in this step.
@@ -73,12 +73,23 @@ fn phase(k: u32, step: u32) -> f32 {
     return f32(hi) * 2.3283064365386963e-10;
 }
 
+// Sine of a share of a turn, 0 to 1. The built-in one may be wrong by 2^-11 of one, and is so on
+// some hardware.
+fn sine(share: f32) -> f32 {
+    // To -1/4 .. 1/4 of a turn, where the sine is the same; then its series, to 4e-8.
+    let centred = share - round(share);
+    let folded = select(centred, select(-0.5, 0.5, centred > 0.0) - centred, abs(centred) > 0.25);
+    let x = 6.283185307179586 * folded;
+    let s = x * x;
+    return x * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s * (1.0 / 362880.0 - s / 39916800.0)))));
+}
+
 fn load(k: u32, step: u32) -> f32 {
     let wall = scene.walls[k];
     if wall.amplitude == 0.0 {
         return wall.push;
     }
-    return wall.push + wall.amplitude * sin(6.283185307179586 * phase(k, step));
+    return wall.push + wall.amplitude * sine(phase(k, step));
 }
 
 // Bring body `k` to `step`. Where `keep` holds the result is stored for the next step.
@@ -101,7 +112,7 @@ fn move_body(k: u32, step: u32, keep: bool) {
                 // F(s) lies between two drifts: half of it belongs to each.
                 let drifts = select(before, 0.0, last == 0u) + body.velocity;
                 let work = 0.5 * scene.step * force * drifts;
-                add_alone(WORKS + k, widen(work * scene.energy_scale));
+                add_alone(WORKS + k, widen(work * scene.work_scale));
             }
         }
         body.offset = add(body.offset, widen(f32(wall.side) * body.velocity * scene.way));

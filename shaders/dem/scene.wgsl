@@ -19,9 +19,9 @@ struct Scene {
     drive_kick: f32,       // step / mass of the layer, s/kg
     part: f32,             // m/s; a power of two: part of the velocities' remains
     parts: f32,            // 1 / part
+    work_scale: f32,       // 1 / (J of a unit of the sums of the walls' work)
     unused_a: u32,
     unused_b: u32,
-    unused_c: u32,
     walls: array<WallScene, 6>,
 }
 

@@ -6,7 +6,7 @@
 //                                     known
 // measure_all  LANES threads a grain  forces and histories of this instant, changing nothing
 
-#import dem::wide::{Wide, widen, carry, fits, add_to_sum}
+#import dem::wide::{Wide, widen, carry, fits, in_range, add_to_sum}
 #import dem::fixed::Place
 #import dem::control::{control, may_step, FULL, UNSTABLE}
 #import dem::scene::{scene, Motion, Own, HELD, DRIVEN, STILL}
@@ -49,7 +49,14 @@ fn gather(k: u32, x: f32) {
     }
     let w = widen(x);
     let before = atomicAdd(&gathered[2u * k + 1u], w.lo);
-    atomicAdd(&gathered[2u * k], bitcast<u32>(w.hi) + carry(before, w.lo));
+    let high = bitcast<u32>(w.hi) + carry(before, w.lo);
+    if high == 0u {
+        return;
+    }
+    let old = atomicAdd(&gathered[2u * k], high);
+    if !in_range(old + high) {
+        atomicOr(&control.flags, FULL);
+    }
 }
 
 // Sum `k` of the workgroup to those of all.

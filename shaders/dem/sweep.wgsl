@@ -13,33 +13,33 @@
 
 @group(0) @binding(1) var<storage, read_write> places: array<Place>;
 @group(0) @binding(2) var<storage, read_write> motions: array<Motion>;
-@group(0) @binding(7) var<storage, read_write> neighbours: array<u32>;
+@group(0) @binding(7) var<storage, read_write> neighbours: array<u32>; // in parts
 #ifdef SLIDES
 // Tangential spring [m]; w: twisting spring [m].
-@group(0) @binding(8) var<storage, read_write> springs: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read_write> springs: array<vec4<f32>>; // in parts
 #endif
 #ifdef LEDGER
 // Force on i in the last step [N].
-@group(0) @binding(9) var<storage, read_write> forces: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read_write> forces: array<vec4<f32>>; // in parts
 #endif
 #ifdef TURNS
 // Rolling spring [m].
-@group(0) @binding(10) var<storage, read_write> rollings: array<vec4<f32>>;
+@group(0) @binding(10) var<storage, read_write> rollings: array<vec4<f32>>; // in parts
 #ifdef LEDGER
 // Torque on i of rolling and twisting in the last step [N m].
-@group(0) @binding(11) var<storage, read_write> couples: array<vec4<f32>>;
+@group(0) @binding(11) var<storage, read_write> couples: array<vec4<f32>>; // in parts
 #endif
 #endif
 
 #ifdef READ
 // What a reading leaves: words of the neighbours, and history and force of each entry.
-@group(0) @binding(20) var<storage, read_write> words_read: array<u32>;
-@group(0) @binding(21) var<storage, read_write> forces_read: array<vec4<f32>>;
+@group(0) @binding(20) var<storage, read_write> words_read: array<u32>; // in parts
+@group(0) @binding(21) var<storage, read_write> forces_read: array<vec4<f32>>; // in parts
 #ifdef SLIDES
-@group(0) @binding(22) var<storage, read_write> springs_read: array<vec4<f32>>;
+@group(0) @binding(22) var<storage, read_write> springs_read: array<vec4<f32>>; // in parts
 #endif
 #ifdef TURNS
-@group(0) @binding(23) var<storage, read_write> rollings_read: array<vec4<f32>>;
+@group(0) @binding(23) var<storage, read_write> rollings_read: array<vec4<f32>>; // in parts
 #endif
 #endif
 
@@ -61,18 +61,18 @@ fn recall(e: u32, word: u32, books: bool) -> Memory {
         return memory;
     }
 #ifdef SLIDES
-    memory.spring = springs[e].xyz;
+    memory.spring = springs_at(e).xyz;
     memory.sliding = (word & SLIDING) != 0u;
 #endif
 #ifdef TURNS
-    memory.twisting = springs[e].w;
-    memory.rolling = rollings[e].xyz;
+    memory.twisting = springs_at(e).w;
+    memory.rolling = rollings_at(e).xyz;
 #endif
 #ifdef LEDGER
     if books {
-        memory.force = forces[e].xyz;
+        memory.force = forces_at(e).xyz;
 #ifdef TURNS
-        memory.couple = couples[e].xyz;
+        memory.couple = couples_at(e).xyz;
 #endif
     }
 #endif
@@ -83,29 +83,29 @@ fn recall(e: u32, word: u32, books: bool) -> Memory {
 fn remember(e: u32, j: u32, was: u32, memory: Memory, force: vec3<f32>, couple: vec3<f32>, books: bool) {
     let word = j | TOUCHING | select(0u, SLIDING, memory.sliding);
 #ifdef READ
-    words_read[e] = word;
-    forces_read[e] = vec4<f32>(force, 0.0);
+    set_words_read(e, word);
+    set_forces_read(e, vec4<f32>(force, 0.0));
 #ifdef SLIDES
-    springs_read[e] = vec4<f32>(memory.spring, memory.twisting);
+    set_springs_read(e, vec4<f32>(memory.spring, memory.twisting));
 #endif
 #ifdef TURNS
-    rollings_read[e] = vec4<f32>(memory.rolling, 0.0);
+    set_rollings_read(e, vec4<f32>(memory.rolling, 0.0));
 #endif
 #else
     if word != was {
-        neighbours[e] = word;
+        set_neighbours(e, word);
     }
 #ifdef SLIDES
-    springs[e] = vec4<f32>(memory.spring, memory.twisting);
+    set_springs(e, vec4<f32>(memory.spring, memory.twisting));
 #endif
 #ifdef TURNS
-    rollings[e] = vec4<f32>(memory.rolling, 0.0);
+    set_rollings(e, vec4<f32>(memory.rolling, 0.0));
 #endif
 #ifdef LEDGER
     if books {
-        forces[e] = vec4<f32>(force, 0.0);
+        set_forces(e, vec4<f32>(force, 0.0));
 #ifdef TURNS
-        couples[e] = vec4<f32>(couple, 0.0);
+        set_couples(e, vec4<f32>(couple, 0.0));
 #endif
     }
 #endif
@@ -114,7 +114,7 @@ fn remember(e: u32, j: u32, was: u32, memory: Memory, force: vec3<f32>, couple: 
 
 // Add entry `e` of grain `me` to `sum`. Grains lie from row `half` on.
 fn meet(e: u32, half: u32, my_place: Place, me: Motion, first: bool, sum: ptr<function, Sum>) {
-    let word = neighbours[e];
+    let word = neighbours_at(e);
     let j = word & INDEX;
     let place = places[half + j];
     let reach_hi = my_place.radius_hi + place.radius_hi;
@@ -126,7 +126,7 @@ fn meet(e: u32, half: u32, my_place: Place, me: Motion, first: bool, sum: ptr<fu
             part(e, j, word, me.id < motions[half + j].id, first, sum);
         }
 #ifdef READ
-        words_read[e] = j;
+        set_words_read(e, j);
 #endif
         return;
     }
@@ -191,6 +191,6 @@ fn part(e: u32, j: u32, word: u32, books: bool, first: bool, sum: ptr<function, 
 #endif
 #endif
 #ifndef READ
-    neighbours[e] = j;
+    set_neighbours(e, j);
 #endif
 }

@@ -20,7 +20,8 @@ const MOST: f32 = 1073741824.0;
 
 // Can x units be widened, and added to a sum that fits? No for what is not a number.
 fn fits(x: f32) -> bool {
-    return abs(x) < MOST;
+    // As bits, what is no number is larger than all that are, whatever a compiler takes for granted.
+    return (bitcast<u32>(x) & 0x7fffffffu) < bitcast<u32>(MOST);
 }
 
 // x units, to the nearest part: exact from 2^-8 units on, where f32 has no finer digits.
@@ -73,6 +74,11 @@ fn add_to_sum(slot: u32, w: Wide) -> bool {
         return true;
     }
     let old = atomicAdd(&sums[2u * slot], high);
-    let now = bitcast<i32>(old + high);
+    return in_range(old + high);
+}
+
+// Is a sum with this high word still one that overflows nothing?
+fn in_range(high: u32) -> bool {
+    let now = bitcast<i32>(high);
     return now > -i32(MOST) && now < i32(MOST);
 }

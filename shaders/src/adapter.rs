@@ -31,6 +31,14 @@ impl Adapter {
         )
     }
 
+    /// The most that a kernel sees of an array through one binding [bytes].
+    pub fn largest_binding(&self) -> u64 {
+        let limits = &self.limits;
+        limits
+            .max_buffer_size
+            .min(limits.max_storage_buffer_binding_size)
+    }
+
     /// Name, interface and driver in one line.
     pub fn describe(&self) -> String {
         let info = &self.info;
@@ -43,11 +51,15 @@ impl Adapter {
 ///
 /// Empty where there is no graphics driver at all.
 pub fn adapters() -> Vec<Adapter> {
+    // Sizes of indirect dispatches are written by our own kernels, which bound them, and the check
+    // costs a dispatch for each. But DirectX 12 tells kernels no number of workgroups without it.
+    let unchecked = match cfg!(windows) {
+        true => InstanceFlags::empty(),
+        false => InstanceFlags::VALIDATION_INDIRECT_CALL,
+    };
     let instance = Instance::new(InstanceDescriptor {
         backends: Backends::VULKAN | Backends::METAL | Backends::DX12,
-        // Sizes of indirect dispatches are written by our own kernels, which bound them; the
-        // check would cost a dispatch for each.
-        flags: InstanceFlags::from_build_config() - InstanceFlags::VALIDATION_INDIRECT_CALL,
+        flags: InstanceFlags::from_build_config() - unchecked,
         ..InstanceDescriptor::new_without_display_handle()
     });
     let all = pollster::block_on(instance.enumerate_adapters(Backends::all()));

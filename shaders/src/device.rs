@@ -1,7 +1,7 @@
 //! An open device: it makes arrays and kernels, runs recordings, and says when it is lost.
 
 use crate::kernel::Kernel;
-use crate::{Adapter, Array, Choice, Error, Recording};
+use crate::{Adapter, Array, Choice, Error, Parts, Recording};
 use bytemuck::Pod;
 use std::sync::{Arc, Mutex};
 use wgpu::{DeviceDescriptor, ErrorFilter, ExperimentalFeatures, Features, MemoryHints, Trace};
@@ -77,23 +77,51 @@ impl Device {
         trouble.clone().map_or(Ok(()), Err)
     }
 
-    /// An array of `len` zeros, called `name` in messages.
+    /// An array of `len` zeros in one part, called `name` in messages.
     ///
     /// # Errors
     /// [`Error::Memory`] if it is larger than a binding or does not fit.
     pub fn array<T: Pod>(&self, name: &str, len: usize) -> Result<Array<T>, Error> {
-        // A binding cannot be empty.
-        let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
-        let limits = &self.adapter.limits;
-        let largest = limits
-            .max_buffer_size
-            .min(limits.max_storage_buffer_binding_size);
+        let bytes = bytes_of::<T>(len);
+        let largest = self.adapter.largest_binding();
         if bytes > largest {
             return Err(Error::Memory(format!(
-                "{name} would take {bytes} bytes, and one array on {} holds at most {largest}",
+                "{name} would take {bytes} bytes, and {} lets a kernel see at most {largest} of it",
                 self.adapter.info.name
             )));
         }
+        Ok(Array::new(
+            [self.buffer(name, bytes)?].into(),
+            len.max(1),
+            len,
+        ))
+    }
+
+    /// The same in as many parts as it needs, for kernels that know of them
+    /// ([`Flags::parts`](crate::Flags::parts)).
+    ///
+    /// # Errors
+    /// [`Error::Memory`] if it does not fit.
+    pub fn array_in_parts<T: Pod>(&self, name: &str, len: usize) -> Result<Array<T>, Error> {
+        let Parts { count, bits } = self.parts::<T>(len);
+        if count == 1 {
+            return self.array(name, len);
+        }
+        let chunk = 1 << bits;
+        let parts = (0..count as usize).map(|part| {
+            let elements = chunk.min(len - part * chunk);
+            self.buffer(name, bytes_of::<T>(elements))
+        });
+        let parts = parts.collect::<Result<Vec<_>, _>>()?;
+        Ok(Array::new(parts.into(), chunk, len))
+    }
+
+    /// How [`array_in_parts`](Self::array_in_parts) lays `len` elements.
+    pub fn parts<T: Pod>(&self, len: usize) -> Parts {
+        Parts::of(len, size_of::<T>(), self.adapter.largest_binding())
+    }
+
+    fn buffer(&self, name: &str, bytes: u64) -> Result<wgpu::Buffer, Error> {
         let scope = self.device.push_error_scope(ErrorFilter::OutOfMemory);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(name),
@@ -111,7 +139,7 @@ impl Device {
                 self.adapter.info.name
             )));
         }
-        Ok(Array::new(buffer, len))
+        Ok(buffer)
     }
 
     /// An array that holds `values`.
@@ -126,10 +154,12 @@ impl Device {
 
     /// Write `values` into `array` from element `first` on, before what is submitted next.
     pub fn write<T: Pod>(&self, array: &Array<T>, first: usize, values: &[T]) {
-        if !values.is_empty() {
-            let offset = (first * size_of::<T>()) as u64;
-            self.queue
-                .write_buffer(&array.buffer, offset, bytemuck::cast_slice(values));
+        let mut left = values;
+        for piece in array.pieces(first..first + values.len()) {
+            let (now, rest) = left.split_at(piece.count);
+            let bytes = bytemuck::cast_slice(now);
+            self.queue.write_buffer(piece.buffer, piece.offset, bytes);
+            left = rest;
         }
     }
 
@@ -162,6 +192,11 @@ impl Device {
         self.check()?;
         waited.map(|_| ()).map_err(|e| Error::Lost(e.to_string()))
     }
+}
+
+/// Bytes of a buffer for `len` elements: a binding cannot be empty, and takes whole words.
+fn bytes_of<T>(len: usize) -> u64 {
+    (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64
 }
 
 /// Keep the first trouble: the others follow from it.

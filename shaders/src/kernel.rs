@@ -3,6 +3,7 @@
 use crate::library::plain;
 use crate::naga::valid::{Capabilities, GlobalUse, ValidationFlags, Validator};
 use crate::naga::{AddressSpace, Module, StorageAccess};
+use crate::parts::part_of;
 use crate::{Bindable, Device, Error};
 use std::borrow::Cow;
 use wgpu::{
@@ -82,6 +83,19 @@ impl Kernel {
             });
             names.push(name);
         }
+        // A device may have fewer than the kernels of a scene with all its parts.
+        let storage = |entry: &&BindGroupLayoutEntry| {
+            let storage = |ty| matches!(ty, BufferBindingType::Storage { .. });
+            matches!(entry.ty, BindingType::Buffer { ty, .. } if storage(ty))
+        };
+        let arrays = entries.iter().filter(storage).count();
+        let most = device.adapter.limits.max_storage_buffers_per_shader_stage;
+        if arrays > most as usize {
+            return Err(Error::Memory(format!(
+                "{entry} needs {arrays} arrays at a time, and {} shows a kernel at most {most}",
+                device.adapter.info.name
+            )));
+        }
         let workgroup = module.entry_points[index].workgroup_size.iter().product();
 
         let scope = device
@@ -132,11 +146,23 @@ impl Kernel {
     pub fn bind(&self, device: &Device, arrays: &[(&str, &dyn Bindable)]) -> Result<Bound, Error> {
         let mut entries = Vec::new();
         for (binding, name) in self.names.iter().enumerate() {
-            let found = arrays.iter().find(|(offered, _)| offered == name);
-            let (_, array) = found.ok_or_else(|| {
+            let found = arrays.iter().find_map(|(offered, array)| {
+                let part = part_of(name, offered)?;
+                Some((offered, part, array.parts()))
+            });
+            let (whole, part, parts) = found.ok_or_else(|| {
                 Error::Shader(format!("{} uses {name}, which it is not given", self.name))
             })?;
-            let mut buffer = array.buffer().as_entire_buffer_binding();
+            let known = self.names.iter().filter(|n| part_of(n, whole).is_some());
+            let known = known.count();
+            if parts.len() != known {
+                return Err(Error::Shader(format!(
+                    "{} takes {whole} in {known} parts, and it lies in {}",
+                    self.name,
+                    parts.len()
+                )));
+            }
+            let mut buffer = parts[part].as_entire_buffer_binding();
             if name == TICK {
                 buffer.size = wgpu::BufferSize::new(4);
             }

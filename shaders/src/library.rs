@@ -4,8 +4,8 @@
 //! and the scene's choices are flags (`#ifdef LEDGER`): what a scene does not use is not
 //! compiled.
 
-use crate::Error;
 use crate::naga::Module;
+use crate::{Error, Parts, parts};
 use include_dir::{Dir, File, include_dir};
 use naga_oil::compose::{
     ComposableModuleDescriptor, Composer, NagaModuleDescriptor, ShaderDefValue,
@@ -14,11 +14,14 @@ use naga_oil::compose::{
 use std::collections::HashMap;
 
 static DEM: Dir = include_dir!("$CARGO_MANIFEST_DIR/dem");
+static LBM: Dir = include_dir!("$CARGO_MANIFEST_DIR/lbm");
 
 /// The choices of a scene, as the preprocessor sees them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flags {
     values: HashMap<String, ShaderDefValue>,
+    /// Of the arrays that lie in several.
+    parts: HashMap<String, Parts>,
 }
 
 impl Flags {
@@ -46,6 +49,20 @@ impl Flags {
         self
     }
 
+    /// For an array `name` that lies in `parts`. Where the WGSL declares it with the note
+    /// `// in parts`, it is read and written by `NAME_at(place)` and `set_NAME(place, value)`; in one
+    /// part these are `NAME[place]` and nothing else.
+    pub fn parts(mut self, name: &str, parts: Parts) -> Self {
+        if parts.count > 1 {
+            self.parts.insert(name.into(), parts);
+        }
+        self
+    }
+
+    fn expand(&self, text: &str) -> Result<String, Error> {
+        parts::expand(text, |name| self.parts.get(name).copied())
+    }
+
     /// Is `name` set?
     pub fn has(&self, name: &str) -> bool {
         self.values.contains_key(name)
@@ -55,19 +72,20 @@ impl Flags {
 /// Path and text of every WGSL file, as `dem/step.wgsl`.
 pub fn files() -> Vec<(String, &'static str)> {
     let mut found = Vec::new();
-    collect(&DEM, &mut found);
+    collect("dem", &DEM, &mut found);
+    collect("lbm", &LBM, &mut found);
     found.sort_unstable();
     found
 }
 
-fn collect(dir: &'static Dir, found: &mut Vec<(String, &'static str)>) {
+fn collect(root: &str, dir: &'static Dir, found: &mut Vec<(String, &'static str)>) {
     let text = |file: &'static File| file.contents_utf8().unwrap_or_default();
     let wgsl = dir
         .files()
         .filter(|file| file.path().extension().is_some_and(|e| e == "wgsl"));
-    found.extend(wgsl.map(|file| (format!("dem/{}", file.path().display()), text(file))));
+    found.extend(wgsl.map(|file| (format!("{root}/{}", file.path().display()), text(file))));
     for dir in dir.dirs() {
-        collect(dir, found);
+        collect(root, dir, found);
     }
 }
 
@@ -87,9 +105,9 @@ pub fn compose(path: &str, flags: &Flags) -> Result<Module, Error> {
 pub fn compose_text(path: &str, text: &str, flags: &Flags) -> Result<Module, Error> {
     let files = files();
     let mut composer = Composer::default();
-    add_imports(&mut composer, &files, text)?;
+    add_imports(&mut composer, &files, text, flags)?;
     let module = composer.make_naga_module(NagaModuleDescriptor {
-        source: text,
+        source: &flags.expand(text)?,
         file_path: path,
         shader_defs: flags.values.clone(),
         ..Default::default()
@@ -128,6 +146,7 @@ fn add_imports(
     composer: &mut Composer,
     files: &[(String, &'static str)],
     text: &str,
+    flags: &Flags,
 ) -> Result<(), Error> {
     let (_, imports, _) = get_preprocessor_data(text);
     for import in imports {
@@ -136,9 +155,9 @@ fn add_imports(
             continue;
         }
         let source = find(files, &path)?;
-        add_imports(composer, files, source)?;
+        add_imports(composer, files, source, flags)?;
         let added = composer.add_composable_module(ComposableModuleDescriptor {
-            source,
+            source: &flags.expand(source)?,
             file_path: &path,
             as_name: Some(name),
             ..Default::default()

@@ -20,9 +20,9 @@ pub struct Pending {
     submission: wgpu::SubmissionIndex,
 }
 
-/// One of the copies.
+/// One of the copies, of an array in one part or several.
 pub struct Part<T> {
-    index: usize,
+    staging: Range<usize>,
     len: usize,
     element: PhantomData<fn() -> T>,
 }
@@ -56,23 +56,23 @@ impl Device {
 impl Reading {
     /// Copy the elements `range` of `array` as they will be after what was submitted before.
     pub fn add<T: Pod>(&mut self, array: &Array<T>, range: Range<usize>) -> Part<T> {
-        let size = size_of::<T>();
-        let bytes = (range.len() * size).max(4).next_multiple_of(4) as u64;
-        let staging = self.device.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("reading"),
-            size: bytes,
-            usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        if !range.is_empty() {
-            let from = (range.start * size) as u64;
+        let (first, len) = (self.staging.len(), range.len());
+        for piece in array.pieces(range) {
+            let bytes = (piece.count * size_of::<T>()).next_multiple_of(4) as u64;
+            let staging = self.device.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("reading"),
+                size: bytes,
+                usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let (from, at) = (piece.buffer, piece.offset);
             self.encoder
-                .copy_buffer_to_buffer(&array.buffer, from, &staging, 0, bytes);
+                .copy_buffer_to_buffer(from, at, &staging, 0, bytes);
+            self.staging.push(staging);
         }
-        self.staging.push(staging);
         Part {
-            index: self.staging.len() - 1,
-            len: range.len(),
+            staging: first..self.staging.len(),
+            len,
             element: PhantomData,
         }
     }
@@ -113,7 +113,8 @@ impl Pending {
         self.device.check()?;
         waited.map_err(|e| Error::Lost(e.to_string()))?;
         let mut bytes = Vec::new();
-        for staging in &self.staging {
+        // Each copy is given back as soon as the host has its own.
+        for staging in self.staging {
             let view = staging.slice(..).get_mapped_range();
             let view = view.map_err(|e| Error::Lost(e.to_string()))?;
             bytes.push(view.to_vec());
@@ -125,7 +126,12 @@ impl Pending {
 impl Arrived {
     /// The elements of `part`.
     pub fn take<T: Pod>(&self, part: Part<T>) -> Vec<T> {
-        let bytes = &self.bytes[part.index][..part.len * size_of::<T>()];
-        bytemuck::pod_collect_to_vec(bytes)
+        let mut elements = Vec::with_capacity(part.len);
+        for bytes in &self.bytes[part.staging] {
+            let whole = bytes.chunks_exact(size_of::<T>());
+            elements.extend(whole.map(bytemuck::pod_read_unaligned::<T>));
+        }
+        elements.truncate(part.len);
+        elements
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::kernel::Bound;
 use crate::timing::Stamps;
-use crate::{Array, Device, Error};
+use crate::{Array, Bindable, Device, Error};
 use wgpu::{CommandEncoder, ComputePass, ComputePassDescriptor};
 
 /// Workgroups along x at most, everywhere; beyond it they spread along y.
@@ -64,7 +64,7 @@ impl Recording {
     /// `sizes` say.
     pub fn dispatch_indirect(&mut self, bound: &Bound, sizes: &Array<u32>, first: usize) {
         let pass = self.set(bound, 0);
-        pass.dispatch_workgroups_indirect(&sizes.buffer, 4 * first as u64);
+        pass.dispatch_workgroups_indirect(&sizes.parts()[0], 4 * first as u64);
     }
 
     fn set(&mut self, bound: &Bound, tick: u32) -> &mut ComputePass<'static> {
@@ -85,21 +85,28 @@ impl Recording {
         to: usize,
         count: usize,
     ) {
-        let size = size_of::<T>() as u64;
         self.pass = None;
-        self.encoder.copy_buffer_to_buffer(
-            &source.buffer,
-            from as u64 * size,
-            &target.buffer,
-            to as u64 * size,
-            count as u64 * size,
-        );
+        let mut done = 0;
+        while done < count {
+            let source = source.piece(from + done, count - done);
+            let target = target.piece(to + done, source.count);
+            self.encoder.copy_buffer_to_buffer(
+                source.buffer,
+                source.offset,
+                target.buffer,
+                target.offset,
+                (target.count * size_of::<T>()) as u64,
+            );
+            done += target.count;
+        }
     }
 
     /// Set all of `array` to zero bytes.
     pub fn clear<T>(&mut self, array: &Array<T>) {
         self.pass = None;
-        self.encoder.clear_buffer(&array.buffer, 0, None);
+        for part in array.parts() {
+            self.encoder.clear_buffer(part, 0, None);
+        }
     }
 
     /// Hand everything to the device; it runs while the host goes on.

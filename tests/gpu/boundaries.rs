@@ -11,6 +11,7 @@ use tests::{MIDDLE, RADIUS, floor, smooth, state};
 
 pub fn list(suite: &mut Suite) {
     suite.gpu("a_moving_wall_goes_as_far_as_it_should", moving);
+    suite.gpu("the_sine_of_a_load_is_as_good_as_f32", sine);
     suite.gpu("a_load_stays_in_phase_for_4e9_steps", phase);
     suite.gpu("a_wall_under_a_late_load_moves_as_on_the_cpu", |d| {
         loaded(d, 2000);
@@ -61,6 +62,36 @@ fn moving(device: &Device) {
     assert!((way - expected).abs() <= allowed);
 }
 
+/// Those of a scene with one wall.
+fn flags() -> Flags {
+    let numbers = [("WALLS", 1), ("BODIES", 2), ("SPREAD", 32)];
+    let flags = numbers.into_iter();
+    flags.fold(Flags::new(), |flags, (name, x)| flags.number(name, x))
+}
+
+const SINE: &str = "
+    #import dem::boundary::sine
+    @group(0) @binding(0) var<storage, read> inputs: array<f32>;
+    @group(0) @binding(1) var<storage, read_write> outputs: array<f32>;
+    @compute @workgroup_size(64)
+    fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+        if id.x < arrayLength(&inputs) {
+            outputs[id.x] = sine(inputs[id.x]);
+        }
+    }";
+
+/// Within a few roundings of one, all around.
+fn sine(device: &Device) {
+    let kernel = kernel(device, "sine.wgsl", SINE, &flags());
+    let shares: Vec<f32> = (0..=4096).map(|k| k as f32 / 4096.0).collect();
+    let found: Vec<f32> = map(device, &kernel, &shares, &[]);
+    for (share, found) in shares.iter().zip(found) {
+        let expected = (TAU * f64::from(*share)).sin();
+        let off = (f64::from(found) - expected).abs();
+        assert!(off < 3e-7, "{share}: {found}, off by {off:e}");
+    }
+}
+
 const PHASE: &str = "
     #import dem::boundary::phase
     @group(0) @binding(0) var<storage, read> inputs: array<u32>;
@@ -74,7 +105,7 @@ const PHASE: &str = "
 
 /// The share of a turn at steps up to the last that a device counts, against 128 bits.
 fn phase(device: &Device) {
-    let flags = Flags::new().number("WALLS", 1).number("BODIES", 2);
+    let flags = flags();
     let module = compose_text("phase.wgsl", PHASE, &flags).unwrap();
     let kernel = kernel(device, "phase.wgsl", PHASE, &flags);
     let offset = |name: &str, member: &str| {

@@ -10,15 +10,18 @@ mod compositions;
 mod conservation;
 mod drift;
 mod fall;
+mod fluid;
 mod lab;
 mod lammps;
 mod laws;
 mod overlap;
+mod parts;
 mod plane_shear;
 mod poster;
 mod program;
 mod rounding;
 mod same_bits;
+mod search;
 mod springs;
 mod sums;
 
@@ -29,6 +32,7 @@ fn main() {
     compositions::list(&mut suite);
     beside_cpu::list(&mut suite);
     laws::list(&mut suite);
+    search::list(&mut suite);
     overlap::list(&mut suite);
     springs::list(&mut suite);
     drift::list(&mut suite);
@@ -39,8 +43,10 @@ fn main() {
     conservation::list(&mut suite);
     boundaries::list(&mut suite);
     lammps::list(&mut suite);
+    parts::list(&mut suite);
     plane_shear::list(&mut suite);
     program::list(&mut suite);
     fall::list(&mut suite);
+    fluid::list(&mut suite);
     suite.run();
 }

@@ -2,11 +2,11 @@
 
 use crate::lab::Suite;
 use dem::gpu::{self, memory::Memory};
-use experiments::backend::{Backend, FEWEST, Machine};
+use experiments::backend::{Backend, Chosen, FEWEST, Machine};
 use experiments::engine::Engine;
 use experiments::output::{netcdf, state};
 use experiments::ready;
-use experiments::run::{Options, run};
+use experiments::run::{Options, STATE, run, run_on};
 use experiments::scene::{Document, Scene};
 use shaders::Device;
 use std::path::Path;
@@ -22,6 +22,7 @@ pub fn list(suite: &mut Suite) {
     suite.gpu("memory_is_told_before_it_is_taken", memory);
     suite.gpu("timed_steps_are_the_same_steps", timed);
     suite.gpu("a_lost_device_is_an_error", lost);
+    suite.gpu("a_device_lost_in_mid_run_costs_no_results", lost_in_mid_run);
 }
 
 /// small-shear with 120 grains, for some hundred steps a phase.
@@ -254,4 +255,46 @@ fn lost(_: &Device) {
     let error = engine.advance(10).unwrap_err().to_string();
     assert!(error.contains("device"), "{error}");
     assert!(engine.snapshot().is_err());
+}
+
+/// The device goes while the second phase runs: the first one's end is there to go on from, and the
+/// series holds what was read until then.
+fn lost_in_mid_run(_: &Device) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let scene = small_shear(&["phase.consolidate.end.max_duration=10 s"]);
+    let device = Device::open(shaders::Choice::Any).unwrap();
+    let chosen = Chosen {
+        machine: Machine::Gpu(device.clone()),
+        why: "as the test wants".into(),
+    };
+    let state = out.join(STATE);
+    let error = std::thread::scope(|threads| {
+        threads.spawn(|| {
+            for _ in 0..6000 {
+                if state.exists() {
+                    break;
+                }
+                std::thread::sleep(std::time::Duration::from_millis(10));
+            }
+            // The second phase is well under way.
+            std::thread::sleep(std::time::Duration::from_millis(500));
+            device.destroy();
+        });
+        let options = options(Backend::Gpu, &out);
+        run_on(&chosen, &scene, &options, &AtomicBool::new(false)).unwrap_err()
+    });
+    let error = format!("{error:#}");
+    for part in [
+        "results until then are in",
+        "phase consolidate",
+        "device was lost",
+    ] {
+        assert!(error.contains(part), "{error}");
+    }
+    let saved = state::load(&state).unwrap();
+    let series = netcdf::open(&out.join("series.nc")).unwrap();
+    let time: Vec<f64> = series.variable("time").unwrap().get_values(..).unwrap();
+    assert!(saved.state.time > 0.0 && time.len() >= 4, "{time:?}");
+    assert!(time[time.len() - 1] >= saved.state.time, "{time:?}");
 }

@@ -15,7 +15,7 @@ pub fn list(suite: &mut Suite) {
 }
 
 /// A sheared bed of the whole law, with a search every few steps.
-fn case() -> (Model, State) {
+pub fn case() -> (Model, State) {
     let (mut model, start) = Bed::new(200, 5.0, 0.5, 11).sheared(0.05);
     model.gravity = DVec3::new(0.0, 0.0, -0.01);
     model.skin = Some(0.005);
@@ -56,7 +56,7 @@ fn run(device: &Device, case: &(Model, State), lanes: u32, each: u64, reads: boo
 }
 
 /// All bits: a comparison by value would take -0 for 0.
-fn assert_same(a: &Snapshot, b: &Snapshot, what: &str) {
+pub fn assert_same(a: &Snapshot, b: &Snapshot, what: &str) {
     let entries = |s: &Snapshot| format!("{:?} {:?}", s.ledger, s.sums);
     assert_eq!(entries(a), entries(b), "{what}");
     assert!(format!("{a:?}") == format!("{b:?}"), "{what}");

@@ -1,16 +1,23 @@
 //! Running sums of two words: whatever the order, the same bits, and those of 128 bits.
 
 use crate::lab::{Suite, kernel, map};
+use dem::contact::Tension;
 use dem::gpu::wide::Wide;
+use dem::{Error, Surface, gpu};
+use glam::DVec3;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use shaders::{Device, Flags};
+use tests::bed::Bed;
+use tests::{RADIUS, floor, mass, model, smooth, state};
 
 pub fn list(suite: &mut Suite) {
     suite.gpu("sums_of_all_threads_have_the_same_bits_in_any_order", order);
     suite.gpu("numbers_go_to_two_words_and_back", there_and_back);
     suite.gpu("sums_that_overflow_say_so", overflow);
+    suite.gpu("sums_of_wide_beds_do_not_fill", wide);
+    suite.gpu("impacts_beyond_the_sums_are_a_clear_error", impacts);
 }
 
 const ADD: &str = "
@@ -114,6 +121,8 @@ fn there_and_back(device: &Device) {
         );
         assert_eq!(back.fits, 1);
     }
+    let nowhere = map::<_, Back>(device, &kernel, &[f32::NAN, -f32::NAN], &[]);
+    assert!(nowhere.iter().all(|back| back.fits == 0));
     let beyond = [most, -most, 2.0 * most, -f32::MAX];
     for back in map::<_, Back>(device, &kernel, &beyond, &[]) {
         assert_eq!(back.fits, 0);
@@ -129,4 +138,51 @@ fn overflow(device: &Device) {
         std::array::from_fn(|slot| (0..64).filter(|k| fits[3 * k + slot] == 0).count());
     // 2^30 / 4e7 = 26.8: the 27th and all that follow.
     assert_eq!(refused, [38, 38, 0]);
+}
+
+/// Four thousand grains beside each other press a floor with a hundredth of k_n R each: what one wall
+/// feels in 300 steps is three times what a sum in units of k_n R alone would hold.
+fn wide(device: &Device) {
+    const ALONG: usize = 64;
+    const STEPS: u64 = 300;
+    let stiffness = 1e6;
+    let weight = 0.01 * stiffness * RADIUS;
+    let spacing = 2.4 * RADIUS;
+    let place = |k: usize| {
+        let (x, y) = ((k % ALONG) as f64 + 0.5, (k / ALONG) as f64 + 0.5);
+        let z = RADIUS - weight / stiffness;
+        (DVec3::new(x * spacing, y * spacing, z), RADIUS)
+    };
+    let grains = Vec::from_iter((0..ALONG * ALONG).map(place));
+    let state = state(&grains, 1);
+    let mut model = model(smooth(stiffness, 0.0, Tension::Clip), &state.grains);
+    model.domain.size = [spacing * ALONG as f64; 2];
+    model.walls = vec![floor(Surface::Frictionless)];
+    model.gravity = DVec3::NEG_Z * weight / mass(RADIUS);
+    let mut solver = gpu::Solver::new(device, model, state).unwrap();
+    solver.advance(STEPS).unwrap();
+    let mean = solver.snapshot().unwrap().sums.wall_force[0] / STEPS as f64;
+    let expected = weight * (ALONG * ALONG) as f64;
+    // Forces are rounded to f32, the same way in all of them.
+    assert!(
+        (mean / expected - 1.0).abs() < 1e-6,
+        "{mean} of {expected} N"
+    );
+}
+
+/// Grains that cross a fifth of their radius in a step lose more than any sum holds.
+fn impacts(device: &Device) {
+    let bed = Bed::new(2000, 12.0, 0.5, 3);
+    let mut state = bed.loose();
+    let model = bed.model(&state);
+    let speed = 0.2 * 0.5 / model.step;
+    for velocity in &mut state.grains.velocity {
+        *velocity = speed * velocity.normalize();
+    }
+    let mut solver = gpu::Solver::new(device, model, state).unwrap();
+    let error = solver.advance(4000).unwrap_err();
+    let Error::Unstable { what, .. } = &error else {
+        panic!("{error}");
+    };
+    assert!(what.contains("a running sum is full"), "{error}");
 }

@@ -63,6 +63,7 @@ fn frame(time: f64, contacts: usize) -> Frame {
         model: Arc::new(model),
         snapshot: Arc::new(snapshot),
         before: Sums::default(),
+        water: None,
         phase: 1,
         strain: 10.0 * time,
         dilation: 0.02,
@@ -82,7 +83,7 @@ fn start(dir: &Path, plan: &Plan) -> Result<Writer, String> {
     let header = Header {
         title: "a column".into(),
         scene: "seed = 7\n".into(),
-        seed: 7,
+        seed: Some(7),
         backend: "cpu",
         device: "a processor".into(),
     };

@@ -1,7 +1,7 @@
 //! Every scene in `bad/` carries what is wrong with it: a comment `#^ PATH: MESSAGE` below
 //! the line in question. A file must give exactly these problems, all at once.
 
-use experiments::scene::{Document, Scene};
+use experiments::scene::{AnyScene, Document};
 use std::fs;
 use std::path::Path;
 
@@ -19,7 +19,7 @@ fn expected(text: &str) -> Vec<(usize, String)> {
 }
 
 fn actual(name: &str, folder: &Path, text: &str) -> Vec<(usize, String)> {
-    let scene = Document::new(name, folder, text, &[]).and_then(|d| Scene::read(&d));
+    let scene = Document::new(name, folder, text, &[]).and_then(|d| AnyScene::read(&d));
     let problems = scene.err().map(|problems| problems.0).unwrap_or_default();
     let each = problems.iter().map(|problem| {
         let place = format!("{name}:{}: ", problem.line);

@@ -3,11 +3,14 @@
 mod bad;
 mod killed;
 mod meaning;
+mod pores;
 mod protocol;
 mod ready_made;
 mod resolved;
+mod water;
 
-use experiments::scene::{Document, Problems, Scene};
+use experiments::ready::{self, Ready};
+use experiments::scene::{AnyScene, Document, Problems, Scene};
 use std::path::Path;
 
 /// The scene of a text, with `sets` as on the command line.
@@ -15,6 +18,14 @@ fn read(text: &str, sets: &[&str]) -> Result<Scene, Problems> {
     let sets: Vec<String> = sets.iter().map(|set| (*set).into()).collect();
     let document = Document::new("scene.toml", Path::new("."), text, &sets)?;
     Scene::read(&document)
+}
+
+/// The ready-made experiments with grains.
+fn of_grains() -> impl Iterator<Item = Ready> {
+    ready::ALL.into_iter().filter(|ready| {
+        let document = Document::new(ready.name, &ready.folder(), ready.scene(), &[]).unwrap();
+        matches!(AnyScene::read(&document).unwrap(), AnyScene::Grains(_))
+    })
 }
 
 /// A scene that is right, for tests that change one thing.

@@ -217,7 +217,7 @@ fn a_state_without_grains_is_refused() {
     let header = experiments::output::Header {
         title: String::new(),
         scene: String::new(),
-        seed: 1,
+        seed: Some(1),
         backend: "cpu",
         device: "a processor".into(),
     };

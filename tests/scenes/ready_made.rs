@@ -7,8 +7,8 @@ use experiments::run::{Options, run};
 use std::sync::atomic::AtomicBool;
 
 #[test]
-fn every_ready_made_experiment_runs_a_few_steps_of_every_phase() {
-    for experiment in ready::ALL {
+fn every_ready_made_experiment_of_grains_runs_a_few_steps_of_every_phase() {
+    for experiment in super::of_grains() {
         let names = read(experiment.scene(), &[]).unwrap().phases;
         // Few grains need a smaller box.
         let mut sets = vec![

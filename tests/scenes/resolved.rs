@@ -2,7 +2,6 @@
 
 use super::{SMALL, read};
 use experiments::backend::Backend;
-use experiments::ready;
 use experiments::run::{Options, run};
 use experiments::scene::tree::Step;
 use experiments::scene::{Document, Scene};
@@ -116,7 +115,7 @@ fn everything_that_was_chosen_is_said() {
 
 #[test]
 fn the_resolved_scene_is_the_same_scene() {
-    for experiment in ready::ALL {
+    for experiment in super::of_grains() {
         again(&read(experiment.scene(), &["grains.count=500"]).unwrap());
     }
     again(&read(SMALL, &[]).unwrap());

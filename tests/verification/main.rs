@@ -1,5 +1,6 @@
 //! Does the code solve its equations?
 
+mod companion;
 mod conservation;
 mod coulomb;
 mod determinism;

@@ -7,7 +7,7 @@ use super::scene::{Body, Motion, Own, Scene};
 use super::steps::GROUP;
 use super::{loading, rows};
 use crate::{Error, Model, State};
-use shaders::{Array, Bindable, Device};
+use shaders::{Array, Bindable, Device, Flags};
 
 /// What a scene has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,11 +61,11 @@ pub(super) struct Entries {
 impl Entries {
     pub fn new(device: &Device, parts: &Parts, room: usize) -> Result<Self, Error> {
         let four = |name: &str, is: bool| match is {
-            true => device.array(name, room).map(Some),
+            true => device.array_in_parts(name, room).map(Some),
             false => Ok(None),
         };
         Ok(Self {
-            neighbours: device.array("neighbours", room)?,
+            neighbours: device.array_in_parts("neighbours", room)?,
             springs: four("springs", parts.slides)?,
             forces: four("forces", parts.ledger)?,
             rollings: four("rollings", parts.turns)?,
@@ -84,6 +84,23 @@ impl Entries {
         }
         recording.submit()?;
         Ok(grown)
+    }
+
+    /// `flags` for kernels that see these arrays, and those of a reading, in as many parts as they
+    /// lie in.
+    pub fn flags(&self, device: &Device, flags: &Flags) -> Flags {
+        let room = self.neighbours.len();
+        let mut flags = flags.clone();
+        for name in ["neighbours", "words_read"] {
+            flags = flags.parts(name, device.parts::<u32>(room));
+        }
+        for name in ["springs", "forces", "rollings", "couples"] {
+            let parts = device.parts::<[f32; 4]>(room);
+            flags = flags
+                .parts(name, parts)
+                .parts(&format!("{name}_read"), parts);
+        }
+        flags
     }
 
     pub fn histories(&self) -> impl Iterator<Item = &Array<[f32; 4]>> {
@@ -239,9 +256,6 @@ impl Arrays {
 
     /// Memory on the device [bytes].
     pub fn bytes(&self) -> u64 {
-        self.named()
-            .iter()
-            .map(|(_, array)| array.buffer().size())
-            .sum()
+        self.named().iter().map(|(_, array)| array.bytes()).sum()
     }
 }

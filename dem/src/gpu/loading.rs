@@ -12,20 +12,29 @@ use bytemuck::Zeroable;
 /// 2^30 units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Units {
-    /// [N]: a part is about 1e-15 of k_n R, far below the force of a contact that matters.
+    /// [N]: a part is about 1e-15 of k_n R, far below the force of a contact that matters. Beds that
+    /// are wide have so much larger units as more grains press against a wall: until its force is
+    /// taken off the device, each of these may press with k_n R / 16 in every step.
     pub force: f64,
     /// [J]: a part is about 1e-17 of k_n R², far below what a contact loses in a step that
     /// matters; a sum holds 64 k_n R² until it is taken off the device.
     pub energy: f64,
+    /// [J] of the work of walls: the unit of energy, larger as that of force is.
+    pub work: f64,
 }
 
 impl Units {
     pub fn of(model: &Model, mean_radius: f64) -> Self {
         let force = model.law.normal_stiffness() * mean_radius;
         let power = |x: f64, below: f64| (x.log2() - below).round().exp2();
+        // Grains, two radii wide, beside each other along a wall.
+        let beside = model.domain.area() / (4.0 * mean_radius.powi(2));
+        let wide = (beside / 16.0).max(1.0).log2().ceil().exp2();
+        let energy = power(force * mean_radius, 24.0);
         Self {
-            force: power(force, 18.0),
-            energy: power(force * mean_radius, 24.0),
+            force: wide * power(force, 18.0),
+            energy,
+            work: wide * energy,
         }
     }
 }
@@ -116,9 +125,9 @@ pub(super) fn scene(model: &Model, state: &State, numbers: &Numbers) -> Result<S
         },
         part: part as f32,
         parts: (1.0 / part) as f32,
+        work_scale: (1.0 / units.work) as f32,
         unused_a: 0,
         unused_b: 0,
-        unused_c: 0,
         walls: [WallScene::zeroed(); MOST_WALLS],
     };
     for (wall, row) in model.walls.iter().zip(&mut scene.walls) {

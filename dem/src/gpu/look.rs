@@ -48,11 +48,12 @@ impl Found {
         let entries = solver.arrays.entries.neighbours.len();
         let at_walls = parts.grains * parts.walls;
         let four = |name: &str, len: usize, is: bool| device.array(name, if is { len } else { 0 });
+        let each = |name: &str, is: bool| device.array_in_parts(name, if is { entries } else { 0 });
         Ok(Self {
-            words: device.array("words_read", entries)?,
-            forces: four("forces_read", entries, true)?,
-            springs: four("springs_read", entries, parts.slides)?,
-            rollings: four("rollings_read", entries, parts.turns)?,
+            words: device.array_in_parts("words_read", entries)?,
+            forces: each("forces_read", true)?,
+            springs: each("springs_read", parts.slides)?,
+            rollings: each("rollings_read", parts.turns)?,
             wall_forces: four("wall_forces_read", at_walls, true)?,
             wall_springs: four("wall_springs_read", at_walls, parts.full_walls)?,
             wall_rollings: four(
@@ -125,17 +126,16 @@ impl Solver {
         let orientations = orientations.as_ref().map(|array| reading.add(array, 0..n));
         let lists = reading.add(&self.arrays.lists, 0..n);
         let words = reading.add(&found.words, 0..entries);
-        let mut four = |array: &Array<[f32; 4]>| {
-            let len = array.len();
-            reading.add(array, 0..len)
-        };
-        let forces = four(&found.forces);
-        let springs = four(&found.springs);
-        let rollings = four(&found.rollings);
-        let wall_forces = four(&found.wall_forces);
-        let wall_springs = four(&found.wall_springs);
-        let wall_rollings = four(&found.wall_rollings);
-        let pushes = four(&found.pushes);
+        // Of the room for entries, what is in use.
+        let mut four =
+            |array: &Array<[f32; 4]>, most: usize| reading.add(array, 0..array.len().min(most));
+        let forces = four(&found.forces, entries);
+        let springs = four(&found.springs, entries);
+        let rollings = four(&found.rollings, entries);
+        let wall_forces = four(&found.wall_forces, usize::MAX);
+        let wall_springs = four(&found.wall_springs, usize::MAX);
+        let wall_rollings = four(&found.wall_rollings, usize::MAX);
+        let pushes = four(&found.pushes, usize::MAX);
         let arrived = reading.wait()?;
         let control: Control = arrived.take(control)[0];
         if control.flags != 0 {

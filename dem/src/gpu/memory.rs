@@ -2,6 +2,7 @@
 
 use super::numbers::Numbers;
 use crate::{Error, Model, State};
+use shaders::Parts;
 
 /// Memory of a solver on the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,8 +11,31 @@ pub struct Memory {
     pub bytes: u64,
     /// Those that a reading needs beside them, for as long as it lasts [bytes].
     pub reading: u64,
-    /// The largest array [bytes].
+    /// The largest array that lies in one part [bytes].
     pub largest: u64,
+    /// Entries of the neighbour lists. Arrays of them may lie in parts, a binding each.
+    entries: u64,
+    /// Arrays of a reading, which sees most: in one part, with a vector for each entry, with a word.
+    arrays: [u64; 3],
+}
+
+/// What a device lets a kernel see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    /// Of an array through one binding [bytes].
+    pub binding: u64,
+    /// Arrays, or parts of them, at a time.
+    pub arrays: u64,
+}
+
+impl Bounds {
+    /// Those of `adapter`.
+    pub fn of(adapter: &shaders::Adapter) -> Self {
+        Self {
+            binding: adapter.largest_binding(),
+            arrays: adapter.limits.max_storage_buffers_per_shader_stage.into(),
+        }
+    }
 }
 
 impl Memory {
@@ -68,15 +92,45 @@ impl Memory {
         Ok(Self {
             bytes: arrays.iter().sum(),
             reading: reading.iter().sum(),
-            largest: four(true, entries).max(moved),
+            largest: grains * (64).max(16 * walls), // places, what grains remember of walls
+            entries,
+            arrays: [
+                // Sums, control, bodies, places, motions, owns, lists, pushes; walls.
+                8 + count(&[true, ledger, full, full])
+                    + count(&[full && turns, full && turns, full && turns && ledger]),
+                count(&[true, slides, slides, ledger, turns, turns, turns && ledger]),
+                2,
+            ],
         })
     }
 
-    /// How many grains would fit, where `grains` take this much, if an array holds at most
-    /// `largest` [bytes].
-    pub fn most_grains(&self, grains: usize, largest: u64) -> u64 {
-        (largest as f64 / self.largest as f64 * grains as f64) as u64
+    /// How many grains a device within `bounds` takes, where `grains` take this much; if it has the
+    /// memory, which nobody tells.
+    pub fn most_grains(&self, grains: usize, bounds: Bounds) -> u64 {
+        let fits = |n: u64| {
+            let times = n as f64 / grains.max(1) as f64;
+            let entries = (self.entries as f64 * times) as usize;
+            let parts = |size| u64::from(Parts::of(entries, size, bounds.binding).count);
+            let [single, vectors, words] = self.arrays;
+            self.largest as f64 * times <= bounds.binding as f64
+                && single + vectors * parts(16) + words * parts(4) <= bounds.arrays
+        };
+        // Places of grains are numbered in 30 bits.
+        let (mut fit, mut too_many) = (0u64, 1 << 30);
+        while too_many - fit > 1 {
+            let middle = fit.midpoint(too_many);
+            match fits(middle) {
+                true => fit = middle,
+                false => too_many = middle,
+            }
+        }
+        fit
     }
+}
+
+/// How many of them there are.
+fn count(are: &[bool]) -> u64 {
+    are.iter().filter(|is| **is).count() as u64
 }
 
 /// Bytes that a step cannot but read and write, for each grain with so many entries in its list

@@ -3,7 +3,7 @@
 use super::arrays::Parts;
 use super::fixed::Grid;
 use super::loading::Units;
-use super::scene::Slots;
+use super::scene::{Slots, spread};
 use super::search::Setting;
 use super::steps::THREADS;
 use crate::{Drive, Error, Horizontal, Model, State, Surface};
@@ -89,7 +89,10 @@ impl Numbers {
             grid: Grid::new(&model.domain, extent(model, state), reach)?,
             units: Units::of(model, mean_radius),
             parts,
-            slots: Slots { walls: parts.walls },
+            slots: Slots {
+                walls: parts.walls,
+                spread: spread(n),
+            },
             driven_mass: (0..n).filter(driven).map(|k| grains.mass[k]).sum(),
             lanes,
             skin,
@@ -135,6 +138,7 @@ pub(super) fn flags(model: &Model, parts: &Parts, lanes: u32) -> Flags {
         .set_if("SHARED_GRAINS", lanes > 1)
         .number("LANES", lanes)
         .number("PARTIALS", if lanes > 1 { THREADS } else { 1 })
+        .number("SPREAD", spread(parts.grains) as u32)
         .number("WALLS", walls)
         .number("BODIES", walls + 1)
         .number("GATHERED_WORDS", 2 * (walls + 6))

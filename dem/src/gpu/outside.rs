@@ -1,7 +1,6 @@
 //! Forces and torques from outside.
 
 use super::solver::Solver;
-use super::steps::Step;
 use crate::Error;
 use glam::DVec3;
 
@@ -34,7 +33,7 @@ impl Solver {
                 let outside = self.device.array_of("outside", &rows)?;
                 let step = self.device.array_of("changed", &changed)?;
                 self.arrays.outside = Some((outside, step));
-                self.step = Step::new(&self.device, &self.flags.clone().set("OUTSIDE"))?;
+                self.flags = self.flags.clone().set("OUTSIDE");
                 self.bind_steps()?;
             }
         }

@@ -25,9 +25,9 @@ pub(super) struct Scene {
     pub drive_kick: f32,
     pub part: f32,
     pub parts: f32,
+    pub work_scale: f32,
     pub unused_a: u32,
     pub unused_b: u32,
-    pub unused_c: u32,
     pub walls: [WallScene; MOST_WALLS],
 }
 
@@ -46,12 +46,17 @@ pub(super) struct WallScene {
     pub unused: u32,
 }
 
+/// The row of a grain that its neighbours read, beside its place.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub(super) struct Motion {
+pub struct Motion {
+    /// [m/s], half a step behind but for the start's.
     pub velocity: [f32; 3],
+    /// [m]
     pub radius: f32,
+    /// [rad/s], half a step behind.
     pub spin: [f32; 3],
+    /// Identity.
     pub id: u32,
 }
 
@@ -70,10 +75,12 @@ pub(super) const STILL: u32 = 4;
 /// The first of the bits of walls.
 pub(super) const TOUCHES: u32 = 8;
 
-/// Words of a neighbour: its place, and these.
-pub(super) const INDEX: u32 = 0x3fff_ffff;
-pub(super) const SLIDING: u32 = 0x4000_0000;
-pub(super) const TOUCHING: u32 = 0x8000_0000;
+/// Of the word of a neighbour: its row.
+pub const INDEX: u32 = 0x3fff_ffff;
+/// Of the word of a neighbour: the contact slides.
+pub const SLIDING: u32 = 0x4000_0000;
+/// Of the word of a neighbour: there is a contact.
+pub const TOUCHING: u32 = 0x8000_0000;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -83,13 +90,18 @@ pub(super) struct Body {
     pub unused: u32,
 }
 
-/// Places that losses are spread over.
-pub(super) const SPREAD: usize = 32;
+/// Places that losses of `grains` are spread over: each is shared by two thousand of them at most,
+/// which may lose 0.03 k_n R² each until sums are taken off the device.
+pub(super) fn spread(grains: usize) -> usize {
+    (grains / 2048).next_power_of_two().clamp(32, 1 << 14)
+}
 
 /// Where the running sums lie: as in boundary.wgsl.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slots {
     pub walls: usize,
+    /// Places of the losses.
+    pub spread: usize,
 }
 
 impl Slots {
@@ -118,14 +130,14 @@ impl Slots {
         self.totals() + self.forces()
     }
 
-    /// First loss; there are [`SPREAD`] places for the four of them.
+    /// First loss; there are `spread` places for the four of them.
     pub fn losses(self) -> usize {
         self.works() + self.walls
     }
 
     /// First loss of a reading.
     pub fn losses_read(self) -> usize {
-        self.losses() + 4 * SPREAD
+        self.losses() + 4 * self.spread
     }
 
     /// All of them.

@@ -24,6 +24,8 @@ pub mod plan;
 #[cfg(test)]
 mod tests;
 
+pub use super::scene::{INDEX, Motion, SLIDING, TOUCHING};
+
 use super::control::Control;
 use plan::{Grid, Plan, Shape};
 use shaders::{Array, Bindable, Bound, Device, Error, Flags, Kernel, Recording, compose, groups};
@@ -71,7 +73,7 @@ pub struct Setting {
 
 impl Setting {
     /// The plan of a search with room for `entries`, of which `touching` touch.
-    fn plan(&self, entries: usize, touching: usize) -> Plan {
+    pub fn plan(&self, entries: usize, touching: usize) -> Plan {
         Plan {
             count: self.count as u32,
             cell_room: (CELLS_A_GRAIN * self.count + 64) as u32,
@@ -109,7 +111,10 @@ pub struct Arrays<'a> {
 }
 
 /// The compiled stages.
+#[derive(Clone)]
 pub struct Kernels {
+    /// What they were compiled with.
+    flags: Flags,
     settle: Kernel,
     measure: Kernel,
     decide: Kernel,
@@ -128,12 +133,17 @@ pub struct Kernels {
 }
 
 impl Kernels {
-    /// Compile the stages; `history`: do contacts remember more than flags?
+    /// Compile the stages for arrays in one part each; `history`: do contacts remember more than
+    /// flags?
     ///
     /// # Errors
     /// [`Error::Shader`] with the compiler's words.
     pub fn new(device: &Device, history: bool) -> Result<Self, Error> {
-        let flags = Flags::new().set_if("HISTORY", history);
+        Self::compile(device, Flags::new().set_if("HISTORY", history))
+    }
+
+    fn compile(device: &Device, flags: Flags) -> Result<Self, Error> {
+        let history = flags.has("HISTORY");
         let pairs = Flags::new().set("PAIRS");
         let file = |name: &str, flags: &Flags| compose(&format!("dem/search/{name}.wgsl"), flags);
         let check = file("check", &flags)?;
@@ -173,8 +183,36 @@ impl Kernels {
                 device.kernel(&carry, "take_rows")?,
                 device.kernel(&carry, "put_rows")?,
             ],
+            flags,
         })
     }
+
+    /// Compile them anew, if they are not for arrays of these lengths.
+    fn suit(&mut self, device: &Device, room: &Room) -> Result<(), Error> {
+        let words = |len| device.parts::<u32>(len);
+        let vectors = |len| device.parts::<[u32; 4]>(len);
+        let flags = Flags::new()
+            .set_if("HISTORY", self.flags.has("HISTORY"))
+            .parts("neighbours", words(room.entries))
+            .parts("origins", words(room.origins))
+            .parts("history", vectors(room.entries))
+            .parts("saved", words(room.touching))
+            .parts("saved_entries", words(room.remembered))
+            .parts("scratch", vectors(room.scratch));
+        if flags != self.flags {
+            *self = Self::compile(device, flags)?;
+        }
+        Ok(())
+    }
+}
+
+/// Lengths of the arrays that may lie in parts.
+struct Room {
+    entries: usize,
+    origins: usize,
+    touching: usize,
+    remembered: usize,
+    scratch: usize,
 }
 
 /// The search with its scratch, bound to the arrays of a solver.
@@ -200,10 +238,18 @@ impl Scratch<'_> {
         self.bytes += array.bytes();
         Ok(array)
     }
+
+    fn in_parts<T: bytemuck::Pod>(&mut self, name: &str, len: usize) -> Result<Array<T>, Error> {
+        let array = self.device.array_in_parts(name, len)?;
+        self.bytes += array.bytes();
+        Ok(array)
+    }
 }
 
 impl Search {
     /// Bind the search to `arrays`, with room for `touching` entries that touch.
+    ///
+    /// Kernels that were compiled for arrays in other parts are compiled anew.
     ///
     /// To be made anew when arrays have grown; [`Control::flags`] are then to be cleared. It
     /// knows of no lists: unless the last search was crowded, set [`Control::skin`] to 0 and
@@ -213,7 +259,7 @@ impl Search {
     /// [`Error::Memory`] if the scratch does not fit.
     pub fn new(
         device: &Device,
-        kernels: &Kernels,
+        kernels: &mut Kernels,
         setting: &Setting,
         arrays: &Arrays,
         touching: usize,
@@ -223,9 +269,18 @@ impl Search {
         let cell_room = plan.cell_room as usize;
         let plan = device.array_of("plan", &[plan])?;
         let history = kernels.history.is_some();
+        let entries = arrays.neighbours.len();
         let remembered = if history { touching } else { 0 };
         let widest = arrays.rows.iter().map(|&(_, width)| width as usize);
         let widest = widest.fold(2, usize::max);
+        let room = Room {
+            entries,
+            origins: if history { entries } else { 0 },
+            touching,
+            remembered,
+            scratch: remembered.max(widest * n),
+        };
+        kernels.suit(device, &room)?;
 
         let mut scratch = Scratch { device, bytes: 0 };
         let grid = scratch.array::<Grid>("grid", 1)?;
@@ -237,12 +292,10 @@ impl Search {
         let members = scratch.array::<u32>("members", n)?;
         let order = scratch.array::<u32>("order", n)?;
         let heads = scratch.array::<[u32; 2]>("heads", n + 1)?;
-        let saved = scratch.array::<u32>("saved", touching)?;
-        let saved_entries = scratch.array::<u32>("saved_entries", remembered)?;
-        let origins = if history { arrays.neighbours.len() } else { 0 };
-        let origins = scratch.array::<u32>("origins", origins)?;
-        let room = remembered.max(widest * n);
-        let room = scratch.array::<[u32; 4]>("scratch", room)?;
+        let saved = scratch.in_parts::<u32>("saved", touching)?;
+        let saved_entries = scratch.in_parts::<u32>("saved_entries", remembered)?;
+        let origins = scratch.in_parts::<u32>("origins", room.origins)?;
+        let vectors = scratch.in_parts::<[u32; 4]>("scratch", room.scratch)?;
         let bytes = scratch.bytes;
         let far = [i32::MAX; 3].into_iter().chain([-i32::MAX; 3]);
         let extent = device.array_of("extent", &far.collect::<Vec<i32>>())?;
@@ -265,7 +318,7 @@ impl Search {
             ("saved", &saved),
             ("saved_entries", &saved_entries),
             ("origins", &origins),
-            ("scratch", &room),
+            ("scratch", &vectors),
             ("lists", arrays.lists),
             ("neighbours", arrays.neighbours),
         ];

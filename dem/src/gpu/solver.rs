@@ -4,11 +4,11 @@ use super::arrays::Arrays;
 use super::control::Control;
 use super::numbers::{self, Numbers};
 use super::search::{self, Search};
-use super::steps::{Step, bind_search};
+use super::steps::{self, Step, bind_search};
 use super::sums::Totals;
 use crate::{Error, Ledger, Model, Outside, State};
 use glam::DVec3;
-use shaders::{Bound, Device, Flags, Kernel, compose};
+use shaders::{Bound, Device, Flags, Kernel};
 
 /// Grains in motion on a device.
 pub struct Solver {
@@ -19,6 +19,8 @@ pub struct Solver {
     pub(super) start: State,
     pub(super) arrays: Arrays,
     pub(super) flags: Flags,
+    /// The same, with the parts that arrays lie in: what `step` and `measure` are compiled with.
+    pub(super) compiled: Flags,
     pub(super) search_kernels: search::Kernels,
     pub(super) search: Search,
     pub(super) touching_room: usize,
@@ -72,20 +74,21 @@ impl Solver {
         model.domain = numbers.grid.domain(&model.domain);
         let arrays = Arrays::new(device, &numbers, &model, &state, drive)?;
         let histories = arrays.entries.histories().count() > 0;
-        let search_kernels = search::Kernels::new(device, histories)?;
+        let mut search_kernels = search::Kernels::new(device, histories)?;
         let touching = numbers.touching;
         let setting = numbers.setting(&model);
-        let search = bind_search(device, &search_kernels, &setting, &arrays, touching)?;
+        let search = bind_search(device, &mut search_kernels, &setting, &arrays, touching)?;
         let flags = numbers.flags(&model);
-        let step = Step::new(device, &flags)?;
-        let measure = compose("dem/step.wgsl", &flags.clone().set("READ").set("APART"))?;
-        let measure = device.kernel(&measure, "measure_all")?;
+        let compiled = arrays.entries.flags(device, &flags);
+        let step = Step::new(device, &compiled)?;
+        let measure = steps::measure(device, &compiled)?;
         let mut solver = Self {
             device: device.clone(),
             model,
             start: state,
             arrays,
             flags,
+            compiled,
             search_kernels,
             search,
             touching_room: touching,

@@ -16,6 +16,9 @@ const GROUPS: u64 = 16;
 /// Steps after which sums are taken off the device: a wall may be pressed by k_n R in all of them
 /// ([`Units`](super::loading::Units)).
 const TAKEN_EVERY: u64 = 1 << 12;
+/// Grains times steps of a submission. Drivers that also serve a screen take a device for lost that
+/// works on one for seconds.
+const SUBMITTED: usize = 1 << 27;
 /// Threads of a workgroup in step.wgsl.
 pub(super) const THREADS: u32 = 64;
 
@@ -38,8 +41,21 @@ impl Step {
     }
 }
 
+/// The kernel of a reading.
+pub(super) fn measure(device: &Device, flags: &Flags) -> Result<Kernel, Error> {
+    let flags = flags.clone().set("READ").set("APART");
+    Ok(device.kernel(&compose("dem/step.wgsl", &flags)?, "measure_all")?)
+}
+
 impl Solver {
+    /// The kernels for the arrays as they are now.
     pub(super) fn bind_steps(&mut self) -> Result<(), Error> {
+        let flags = self.arrays.entries.flags(&self.device, &self.flags);
+        if flags != self.compiled {
+            self.measure = measure(&self.device, &flags)?;
+            self.step = Step::new(&self.device, &flags)?;
+            self.compiled = flags;
+        }
         let named = self.arrays.named();
         let kernels = [Some(&self.step.whole), self.step.motion.as_ref()];
         let bound = kernels.into_iter().flatten();
@@ -129,26 +145,31 @@ impl Solver {
 
     /// Hand over `groups` groups of steps.
     fn submit(&self, count: u64) -> Result<(), Error> {
+        let most = (SUBMITTED / self.arrays.parts.grains.max(1)).max(1);
         let mut recording = self.device.record();
-        self.record_groups(&mut recording, count);
+        let mut recorded = 0;
+        for _ in 0..count {
+            self.search.record(&mut recording);
+            for tick in 0..GROUP as u32 {
+                if recorded == most {
+                    std::mem::replace(&mut recording, self.device.record()).submit()?;
+                    recorded = 0;
+                }
+                self.record_step(&mut recording, tick);
+                recorded += 1;
+            }
+            self.search.settle(&mut recording);
+        }
         Ok(recording.submit()?)
     }
 
-    pub(super) fn record_groups(&self, recording: &mut Recording, count: u64) {
+    /// The step `tick` of a group.
+    pub(super) fn record_step(&self, recording: &mut Recording, tick: u32) {
         let n = self.arrays.parts.grains;
         let shared = groups(n * self.numbers.lanes as usize, THREADS);
-        let single = groups(n, THREADS);
-        for _ in 0..count {
-            self.search.record(recording);
-            recording.section("steps");
-            for tick in 0..GROUP as u32 {
-                recording.dispatch_at(&self.dispatches[0], tick, shared);
-                if let Some(motion) = self.dispatches.get(1) {
-                    recording.dispatch_at(motion, tick, single);
-                }
-            }
-            recording.section("settle");
-            self.search.settle(recording);
+        recording.dispatch_at(&self.dispatches[0], tick, shared);
+        if let Some(motion) = self.dispatches.get(1) {
+            recording.dispatch_at(motion, tick, groups(n, THREADS));
         }
     }
 
@@ -185,7 +206,7 @@ impl Solver {
         self.touching_room = self.touching_room.max(room(control.touching));
         self.search = bind_search(
             &self.device,
-            &self.search_kernels,
+            &mut self.search_kernels,
             &self.numbers.setting(&self.model),
             &self.arrays,
             self.touching_room,
@@ -199,7 +220,7 @@ impl Solver {
 /// The search, bound to `arrays`, with room for `touching` entries that touch.
 pub(super) fn bind_search(
     device: &Device,
-    kernels: &search::Kernels,
+    kernels: &mut search::Kernels,
     setting: &search::Setting,
     arrays: &Arrays,
     touching: usize,

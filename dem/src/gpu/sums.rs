@@ -1,7 +1,7 @@
 //! Sums that steps leave on the device: forces on walls and layers, works, losses.
 
 use super::look::Look;
-use super::scene::{SPREAD, Slots};
+use super::scene::Slots;
 use super::solver::Solver;
 use super::wide::Wide;
 use crate::{Contact, Drive, Grains, Horizontal, Ledger, Sums, WallMotion};
@@ -53,6 +53,10 @@ impl Look {
         solver.totals.units(slot, self.sums[slot]) * solver.numbers.units.energy
     }
 
+    fn work(&self, solver: &Solver, slot: usize) -> f64 {
+        solver.totals.units(slot, self.sums[slot]) * solver.numbers.units.work
+    }
+
     /// Forces of this instant: walls, held and driven layer [N].
     pub(super) fn forces_now(&self, solver: &Solver) -> Vec<f64> {
         let first = solver.numbers.slots.reading();
@@ -94,7 +98,8 @@ impl Look {
         let mut ledger = Ledger::of_instant(model, grains, contacts);
         if steps > 0 {
             let lost = |k: usize| {
-                let spread = (0..SPREAD).map(|p| self.energy(solver, slots.losses() + 4 * p + k));
+                let spread =
+                    (0..slots.spread).map(|p| self.energy(solver, slots.losses() + 4 * p + k));
                 spread.sum::<f64>() + self.energy(solver, slots.losses_read() + k)
             };
             ledger.dissipated_friction = lost(0);
@@ -137,7 +142,7 @@ impl Look {
     fn work_of_wall(&self, solver: &Solver, k: usize, steps: u64, now: &[f64]) -> f64 {
         let slots = solver.numbers.slots;
         let half = 0.5 * solver.model.step;
-        let booked = self.energy(solver, slots.works() + k);
+        let booked = self.work(solver, slots.works() + k);
         let walls = slots.walls;
         let before = match steps {
             // There was no drift before the first force.

@@ -157,9 +157,9 @@ fn structs_of_the_time_step_lie_alike_on_both_sides() {
         drive_kick,
         part,
         parts,
+        work_scale,
         unused_a,
         unused_b,
-        unused_c,
         walls
     );
     // Pairs of words on one side are two numbers on the other.

@@ -24,14 +24,24 @@ impl Solver {
     /// # Errors
     /// Those of [`advance`](Self::advance).
     pub fn time(&mut self, steps: u64) -> Result<Option<Timing>, Error> {
-        let Some(mut recording) = self.device.record_timed() else {
-            return Ok(None);
-        };
         let groups = steps.div_ceil(GROUP as u64);
         let begun = (self.control.base, self.control.searches);
         self.write_end(begun.0 + (groups * GROUP as u64) as u32);
-        self.record_groups(&mut recording, groups);
-        let each = recording.submit_timed()?;
+        let mut each = Vec::new();
+        for _ in 0..groups {
+            let Some(mut recording) = self.device.record_timed() else {
+                self.write_end(begun.0);
+                return Ok(None);
+            };
+            self.search.record(&mut recording);
+            recording.section("steps");
+            for tick in 0..GROUP as u32 {
+                self.record_step(&mut recording, tick);
+            }
+            recording.section("settle");
+            self.search.settle(&mut recording);
+            each.extend(recording.submit_timed()?);
+        }
         let control = self.device.read(&self.arrays.control)?[0];
         self.heed(control)?;
         // Lists may have ended before a group did: what was asked for is what was made.

@@ -1,7 +1,6 @@
 //! What no step on a device can undercut: the start of a dispatch, and the way of its bytes
 //! through the memory.
 
-use crate::backend::largest_array;
 use anyhow::Result;
 use shaders::{Device, Flags, compose_text};
 use std::time::Instant;
@@ -53,7 +52,7 @@ impl Floor {
             true => 1 << 29,
             false => 1 << 26,
         };
-        let bytes = largest_array(&device.adapter).min(wanted) as usize;
+        let bytes = device.adapter.largest_binding().min(wanted) as usize;
         let from = device.array::<u32>("from", bytes / 4)?;
         let to = device.array::<u32>("to", bytes / 4)?;
         let copy = best(|| {

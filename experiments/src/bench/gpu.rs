@@ -27,12 +27,18 @@ pub fn sizes(device: &Device) -> Vec<usize> {
     }
 }
 
-/// Measure all cases at `grains` grains in `rounds` rounds. A case that does not fit is told
-/// and left out.
+/// Measure all cases at `grains` grains in `rounds` rounds, fewer where time `ends`. A case that does
+/// not fit, or comes too late, is told and left out.
 ///
 /// # Errors
 /// A device that fails.
-pub fn measure(device: &Device, floor: &Floor, grains: usize, rounds: u32) -> Result<Vec<Row>> {
+pub fn measure(
+    device: &Device,
+    floor: &Floor,
+    grains: usize,
+    rounds: u32,
+    ends: Instant,
+) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for sizes in Sizes::ALL {
         let cases = Case::ALL.into_iter().filter(|case| case.sizes() == sizes);
@@ -41,9 +47,19 @@ pub fn measure(device: &Device, floor: &Floor, grains: usize, rounds: u32) -> Re
         if cases.is_empty() {
             continue;
         }
+        if Instant::now() >= ends {
+            let names: Vec<&str> = cases.iter().map(|case| case.name()).collect();
+            println!(
+                "{grains} grains, {}: left out, time is up; --minutes gives more",
+                names.join(", ")
+            );
+            continue;
+        }
         let bed = Bed::of(sizes, grains)?;
         for case in cases {
-            match row(device, floor, case, &bed, rounds) {
+            // A device of its own: one that ran out of memory would refuse the next case, too.
+            let device = &Device::open_adapter((*device.adapter).clone())?;
+            match row(device, floor, case, &bed, rounds, ends) {
                 Ok(row) => rows.push(row),
                 Err(Error::Device(error @ shaders::Error::Memory(_))) => {
                     println!(
@@ -58,7 +74,14 @@ pub fn measure(device: &Device, floor: &Floor, grains: usize, rounds: u32) -> Re
     Ok(rows)
 }
 
-fn row(device: &Device, floor: &Floor, case: Case, bed: &Bed, rounds: u32) -> Result<Row, Error> {
+fn row(
+    device: &Device,
+    floor: &Floor,
+    case: Case,
+    bed: &Bed,
+    rounds: u32,
+    ends: Instant,
+) -> Result<Row, Error> {
     let (model, start) = case.start(bed);
     let mut solver = gpu::Solver::new(device, model, start)?;
     let steps = stretch(device, bed.packing.len());
@@ -66,7 +89,12 @@ fn row(device: &Device, floor: &Floor, case: Case, bed: &Bed, rounds: u32) -> Re
     solver.advance(steps)?;
     let (grains, searched) = (bed.packing.len() as f64, solver.searches());
     let mut samples = Vec::new();
-    for _ in 0..rounds {
+    for round in 0..rounds {
+        if round > 0 && Instant::now() >= ends {
+            let (n, name) = (bed.packing.len(), case.name());
+            println!("{n} grains, {name}: time is up after {round} of {rounds} rounds");
+            break;
+        }
         let clock = Instant::now();
         solver.advance(steps)?;
         samples.push(Sample {
@@ -99,7 +127,7 @@ fn row(device: &Device, floor: &Floor, case: Case, bed: &Bed, rounds: u32) -> Re
         hardware: device.adapter.is_hardware(),
         threads_per_grain: solver.lanes(),
         near_per_grain: entries,
-        searches_per_1000_steps: 1e3 * searches as f64 / (steps * u64::from(rounds)) as f64,
+        searches_per_1000_steps: 1e3 * searches as f64 / (steps * samples.len() as u64) as f64,
         sections,
         moved_bytes_per_grain_step: moved,
         us_of_empty_dispatch: 1e6 * floor.dispatch,

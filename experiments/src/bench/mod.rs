@@ -1,24 +1,29 @@
-//! `esker bench speed`: how many grain-steps a second on a dense sheared bed.
+//! `esker bench speed`: how many grain-steps a second on a dense sheared bed, and how many cells of
+//! water.
 //!
 //! Every round takes each case once, so that a machine whose clock wanders is fair to all of
 //! them; medians and extremes over the rounds are reported.
 
 mod case;
 mod floor;
+mod fluid;
 mod gpu;
+mod kept;
 mod lammps;
 mod numbers;
 mod packing;
 mod report;
 
 use crate::backend::{Backend, Machine, processor};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Result, bail, ensure};
 use case::{Bed, Case};
 use floor::Floor;
+use kept::Kept;
 use lammps::Lammps;
 use packing::Sizes;
 use report::{Row, Sample};
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// What `esker bench speed` measures.
 #[derive(Clone, Debug, clap::Args)]
@@ -29,15 +34,22 @@ pub struct SpeedArgs {
     /// Numbers of grains, multiples of 1000 [default: 1000 to 100 000, to 10 000 000 on a GPU]
     #[arg(long, value_delimiter = ',', value_name = "N")]
     pub grains: Vec<usize>,
+    /// Cells along each side of lattices of water, instead of grains or, with --grains, beside them
+    #[arg(long, value_delimiter = ',', value_name = "N")]
+    pub fluid: Vec<usize>,
     /// Numbers of threads of the CPU (and of LAMMPS' ranks) [default: one for each core]
     #[arg(long, value_delimiter = ',', value_name = "N")]
     pub threads: Vec<usize>,
     /// Rounds; each takes every case once
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub rounds: u32,
-    /// Write the results as a JSON array, one object a case
+    /// Write the results as a JSON array, one object a case; whole at any time, and more after each
+    /// number of grains
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// On a GPU: after so long no further round begins but the first of a case, and no further case
+    #[arg(long, default_value_t = 8.0, value_name = "MINUTES")]
+    pub minutes: f64,
     /// Run the same packing in LAMMPS too (needs `lmp`, and `mpirun` for several ranks)
     #[arg(long)]
     pub with_lammps: bool,
@@ -54,14 +66,20 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
         packing::check_count(grains)?;
     }
     // Beds of all sizes are measured, also those that are too small for a GPU to pay.
-    let rows = match args.backend.choose(usize::MAX, 0)?.machine {
-        Machine::Cpu { .. } => on_cpu(args)?,
-        Machine::Gpu(device) => on_gpu(&device, args)?,
+    let machine = args.backend.choose(usize::MAX, 0)?.machine;
+    let mut kept = Kept::new(args.json.clone());
+    let rows = match (&machine, args.fluid.is_empty() || !args.grains.is_empty()) {
+        (_, false) => Vec::new(),
+        (Machine::Cpu { .. }, true) => on_cpu(args, &mut kept)?,
+        (Machine::Gpu(device), true) => on_gpu(device, args, &mut kept)?,
     };
-    if let Some(file) = &args.json {
-        let text = serde_json::to_string_pretty(&rows)? + "\n";
-        std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
-    }
+    fluid::speed(
+        &machine,
+        &args.fluid,
+        &threads(args)?,
+        args.rounds,
+        &mut kept,
+    )?;
     // Where sizes differ much, many small grains float in the holes between large ones.
     let dense = |row: &Row| row.case != Case::LogNormal.name();
     ensure!(
@@ -73,15 +91,20 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
     Ok(())
 }
 
-fn on_cpu(args: &SpeedArgs) -> Result<Vec<Row>> {
-    let threads = match args.threads.is_empty() {
-        true => vec![std::thread::available_parallelism()?.get()],
-        false => args.threads.clone(),
-    };
+/// Numbers of threads that are asked for, or one for each core.
+fn threads(args: &SpeedArgs) -> Result<Vec<usize>> {
     ensure!(
-        threads.iter().all(|&t| t > 0),
+        args.threads.iter().all(|&t| t > 0),
         "--threads: give 1 or more threads"
     );
+    Ok(match args.threads.is_empty() {
+        true => vec![std::thread::available_parallelism()?.get()],
+        false => args.threads.clone(),
+    })
+}
+
+fn on_cpu(args: &SpeedArgs, kept: &mut Kept) -> Result<Vec<Row>> {
+    let threads = threads(args)?;
     if args.with_lammps {
         lammps::check_installed(threads.iter().any(|&t| t > 1))?;
     }
@@ -92,13 +115,14 @@ fn on_cpu(args: &SpeedArgs) -> Result<Vec<Row>> {
         for &threads in &threads {
             let new = measure(&beds, threads, args)?;
             report::print(&new, args.rounds);
+            kept.add(&new)?;
             rows.extend(new);
         }
     }
     Ok(rows)
 }
 
-fn on_gpu(device: &shaders::Device, args: &SpeedArgs) -> Result<Vec<Row>> {
+fn on_gpu(device: &shaders::Device, args: &SpeedArgs, kept: &mut Kept) -> Result<Vec<Row>> {
     if args.with_lammps {
         bail!("--with-lammps compares with the CPU; add --backend cpu");
     }
@@ -111,9 +135,11 @@ fn on_gpu(device: &shaders::Device, args: &SpeedArgs) -> Result<Vec<Row>> {
     }
     let floor = Floor::measure(device)?;
     let mut rows = Vec::new();
+    let ends = Instant::now() + Duration::from_secs_f64(60.0 * args.minutes);
     for grains in or(&args.grains, || gpu::sizes(device)) {
-        let new = gpu::measure(device, &floor, grains, args.rounds)?;
+        let new = gpu::measure(device, &floor, grains, args.rounds, ends)?;
         report::print(&new, args.rounds);
+        kept.add(&new)?;
         rows.extend(new);
     }
     Ok(rows)

@@ -215,7 +215,8 @@ pub fn print(rows: &[Row], rounds: u32) {
     }
 }
 
-fn median_and_range(values: impl Iterator<Item = f64>) -> (f64, [f64; 2]) {
+/// Median, and least and greatest of values, of which there is at least one.
+pub fn median_and_range(values: impl Iterator<Item = f64>) -> (f64, [f64; 2]) {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     let n = sorted.len();

@@ -2,10 +2,11 @@
 
 use crate::backend::Machine;
 use crate::engine::Engine;
-use crate::scene::Scene;
+use crate::protocol;
 use crate::scene::whole::whole;
+use crate::scene::{Phase, Scene};
 use anyhow::Result;
-use dem::{Grains, Model, State, WallState};
+use dem::{Grains, State, WallState};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -23,13 +24,13 @@ const GRAINS: usize = 20_000;
 /// How long to measure [s].
 const SECONDS: f64 = 0.5;
 
-/// Measure `model` on `machine` with grains of the scene's mean size on a
+/// Measure `phase` on `machine` with grains of the scene's mean size on a
 /// simple cubic lattice, pressed together so that each has six contacts; a sheared bed has
 /// four to five, and more pairs that are near without touching.
 ///
 /// # Errors
 /// Those of the solver.
-pub fn calibrate(scene: &Scene, model: &Model, machine: &Machine) -> Result<Cost> {
+pub fn calibrate(scene: &Scene, phase: &Phase, machine: &Machine) -> Result<Cost> {
     let radius = scene.start.grains.mean_radius();
     let mass = scene.start.grains.mass.iter().sum::<f64>() / scene.start.grains.len() as f64;
     let side = (scene.start.grains.len().min(GRAINS) as f64)
@@ -54,7 +55,7 @@ pub fn calibrate(scene: &Scene, model: &Model, machine: &Machine) -> Result<Cost
         grains,
         ..State::default()
     };
-    let mut model = model.clone();
+    let mut model = protocol::model(scene, phase, 1.0);
     let domain = dem::Domain {
         size: [length; 2],
         periodic: [true; 2],
@@ -65,7 +66,17 @@ pub fn calibrate(scene: &Scene, model: &Model, machine: &Machine) -> Result<Cost
         wall.motion = dem::WallMotion::Held;
     }
     model.drive = None;
-    let mut engine = Engine::new(machine, model, state)?;
+    let mut engine = match (&scene.water, &phase.water) {
+        (Some(water), Some(edges)) => {
+            // As many cells for each grain as in the scene.
+            let least = water.reach.count() as f64;
+            let across = (length / water.spacing).round().max(least) as usize;
+            let mut of_packing = water.model(edges, None);
+            of_packing.cells = [across; 3];
+            Engine::wet(machine, model, state, water, of_packing, None)?
+        }
+        _ => Engine::new(machine, model, state)?,
+    };
     engine.advance(20)?;
     let (begun, mut steps, mut more) = (Instant::now(), 0, 20);
     // More and more at a time: a GPU makes steps by the hundred.

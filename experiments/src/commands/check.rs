@@ -3,10 +3,11 @@
 use super::SceneArgs;
 use super::cost;
 use super::left_out::left_out;
+use super::pores;
 use crate::backend::{Backend, Machine};
 use crate::protocol;
 use crate::run::expected_steps;
-use crate::scene::{Phase, Scene, Shear};
+use crate::scene::{AnyScene, Phase, Scene, Shear};
 use anyhow::Result;
 use clap::Args;
 use dem::contact::Tension;
@@ -34,28 +35,38 @@ pub struct Check {
 pub fn check(arguments: &Check) -> Result<ExitCode> {
     let (scene, _) = arguments.scene.read()?;
     let threads = arguments.threads.map_or(0, usize::from);
-    let grains = scene.start.grains.len();
-    let chosen = arguments.backend.choose(grains, threads)?;
-    let facts = Facts::of(&scene);
+    match &scene {
+        AnyScene::Grains(scene) => check_grains(scene, arguments.backend, threads),
+        AnyScene::Water(scene) => super::water::check(scene, arguments.backend, threads),
+    }
+}
+
+fn check_grains(scene: &Scene, backend: Backend, threads: usize) -> Result<ExitCode> {
+    let chosen = backend.choose_for(scene, threads)?;
+    let facts = Facts::of(scene);
     println!("{}\n", scene.title);
-    bed(&scene, &facts);
-    step(&scene, &facts);
-    collisions(&scene, &facts);
+    bed(scene, &facts);
+    step(scene, &facts);
+    collisions(scene, &facts);
+    if let Some(water) = &scene.water {
+        pores::facts(scene, water, facts.height);
+    }
     println!();
     for phase in &scene.phases {
-        describe(&scene, phase, &facts);
+        describe(scene, phase, &facts);
     }
+    pores::report(scene, &chosen.machine)?;
     println!();
     line(
         "computed on",
         &format!("{} ({})", chosen.machine.describe(), chosen.why),
     );
-    cost::time_and_memory(&scene, &chosen.machine)?;
+    cost::time_and_memory(scene, &chosen.machine)?;
     if let Machine::Gpu(device) = &chosen.machine {
-        cost::memory_on_device(&scene, &device.adapter)?;
-        cost::accuracy(&scene, facts.diameter)?;
+        cost::memory_on_device(scene, &device.adapter)?;
+        cost::accuracy(scene, facts.diameter)?;
     }
-    let out = left_out(&scene, &chosen.machine);
+    let out = left_out(scene, &chosen.machine);
     if !out.is_empty() {
         line("left out", &out.join(", "));
     }
@@ -222,6 +233,9 @@ fn describe(scene: &Scene, phase: &Phase, facts: &Facts) {
             "  shear",
             &format!("{rate:.4e} 1/s, upper layer at about {velocity:.3e} m/s"),
         );
+    }
+    if let Some(water) = &scene.water {
+        pores::describe(scene, water, phase, facts.height, rate);
     }
     if phase.shear.is_some() {
         let share = 2.0 * phase.layer / facts.height;

@@ -2,16 +2,16 @@
 
 use super::calibrate::calibrate;
 use super::check::line;
-use crate::backend::{Machine, largest_array};
+use crate::backend::Machine;
 use crate::protocol;
 use crate::run::expected_steps;
 use crate::scene::Scene;
 use crate::scene::whole::grid;
 use anyhow::Result;
 use dem::WallMotion;
-use dem::gpu::memory::Memory;
+use dem::gpu::memory::{Bounds, Memory};
 
-const MIB: f64 = 1_048_576.0;
+pub const MIB: f64 = 1_048_576.0;
 
 /// How long `scene` takes on `machine`, and how much memory of this computer.
 ///
@@ -22,7 +22,7 @@ pub fn time_and_memory(scene: &Scene, machine: &Machine) -> Result<()> {
     let mut seconds = 0.0;
     let mut bytes: f64 = 0.0;
     for phase in &scene.phases {
-        let cost = calibrate(scene, &protocol::model(scene, phase, 1.0), machine)?;
+        let cost = calibrate(scene, phase, machine)?;
         seconds += cost.grain_step * count * expected_steps(scene, phase) as f64;
         bytes = bytes.max(cost.bytes);
     }
@@ -45,7 +45,7 @@ pub fn time_and_memory(scene: &Scene, machine: &Machine) -> Result<()> {
     Ok(())
 }
 
-fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 100.0 => format!("{s:.0} s"),
         s if s < 6000.0 => format!("{:.0} min", s / 60.0),
@@ -64,17 +64,17 @@ pub fn memory_on_device(scene: &Scene, adapter: &shaders::Adapter) -> Result<()>
         return Ok(());
     };
     let count = scene.start.grains.len();
-    let largest = largest_array(adapter);
+    let bounds = Bounds::of(adapter);
     line(
         "memory of the GPU",
         &format!(
             "about {:.1} MiB, {} bytes a grain, and {:.1} MiB while outputs are read; {} grains \
-             at most, of which an array takes {:.0} MiB",
+             at most, by bindings of {:.0} MiB, if its memory suffices",
             memory.bytes as f64 / MIB,
             memory.bytes / count as u64,
             memory.reading as f64 / MIB,
-            memory.most_grains(count, largest),
-            largest as f64 / MIB
+            memory.most_grains(count, bounds),
+            bounds.binding as f64 / MIB
         ),
     );
     Ok(())

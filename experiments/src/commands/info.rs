@@ -1,7 +1,7 @@
 //! `esker info`: who could compute here, and who would.
 
 use super::check::line;
-use crate::backend::{Backend, FEWEST, Machine, largest_array, processor};
+use crate::backend::{Backend, FEWEST, Machine, processor};
 use anyhow::Result;
 use dem::contact::{Linear, Tension};
 use dem::{ContactLaw, Domain, Grains, Model, Solver, State};
@@ -64,16 +64,16 @@ fn describe(adapter: &Adapter) {
     line("  kind", &kind);
     let limits = &adapter.limits;
     line(
-        "  largest array",
+        "  largest binding",
         &format!(
-            "{} MiB (buffer {} MiB, binding {} MiB)",
-            largest_array(adapter) / MIB,
+            "{} MiB (buffer {} MiB, binding {} MiB); lists of neighbours may take several",
+            adapter.largest_binding() / MIB,
             limits.max_buffer_size / MIB,
             limits.max_storage_buffer_binding_size / MIB
         ),
     );
     line(
-        "  arrays of a kernel",
+        "  bindings a kernel",
         &limits.max_storage_buffers_per_shader_stage.to_string(),
     );
 }

@@ -46,6 +46,9 @@ pub fn left_out(scene: &Scene, machine: &Machine) -> Vec<String> {
             "no forces of the step before",
         ));
     }
+    if scene.water.is_none() {
+        out.push("water between the grains".into());
+    }
     if let Machine::Gpu(_) = machine {
         if !rolls && !twists {
             out.push("springs of rolling".into());
@@ -53,7 +56,6 @@ pub fn left_out(scene: &Scene, machine: &Machine) -> Vec<String> {
         if never(&|m| matches!(m.drive, Some(Drive::ShearStress(_)))) {
             out.push("motion under a shear stress (a step is one dispatch)".into());
         }
-        out.push("forces of water".into());
     }
     if scene.domain.periodic == [true; 2] {
         out.push("vertical walls".into());

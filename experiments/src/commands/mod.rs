@@ -5,8 +5,10 @@ mod check;
 mod cost;
 mod info;
 mod left_out;
+mod pores;
 mod run;
 mod scene;
+mod water;
 
 pub use check::{Check, check};
 pub use info::info;
@@ -16,7 +18,7 @@ pub use scene::SceneArgs;
 use crate::{bed, ready, scene as scenes};
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Arguments of `esker new`.
@@ -44,7 +46,7 @@ pub struct Import {
 /// What can be measured.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Bench {
-    /// Grain-steps per second on a dense sheared packing
+    /// Grain-steps per second on a dense sheared packing, or cells of water per second
     Speed(crate::bench::SpeedArgs),
 }
 
@@ -54,9 +56,9 @@ pub enum Bench {
 /// None that a user can cause.
 pub fn list() -> Result<ExitCode> {
     for ready in ready::ALL {
-        let document = scenes::Document::new(ready.name, Path::new("."), ready.scene(), &[])?;
+        let document = scenes::Document::new(ready.name, &ready.folder(), ready.scene(), &[])?;
         let title = scenes::title(&document).unwrap_or_default();
-        println!("{:14} {title}", ready.name);
+        println!("{:22}{title}", ready.name);
     }
     Ok(ExitCode::SUCCESS)
 }

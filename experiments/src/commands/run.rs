@@ -3,8 +3,11 @@
 use super::SceneArgs;
 use crate::backend::Backend;
 use crate::run::{Options, STATE, run as run_scene};
+use crate::scene::{AnyScene, Scene, WaterScene};
+use crate::water::{Outcome, run as run_water};
 use anyhow::{Context, Result};
 use clap::Args;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -51,9 +54,6 @@ pub fn run(arguments: &Run) -> Result<ExitCode> {
         force: arguments.force,
         quiet: arguments.quiet,
     };
-    for warning in scene.warnings().iter().filter(|_| !options.quiet) {
-        eprintln!("warning: {warning}");
-    }
     let stop = Arc::new(AtomicBool::new(false));
     let asked = stop.clone();
     let on_signal = move || {
@@ -63,9 +63,20 @@ pub fn run(arguments: &Run) -> Result<ExitCode> {
         }
     };
     ctrlc::set_handler(on_signal).context("cannot listen for Ctrl-C")?;
-    let summary = run_scene(&scene, &options, &stop)?;
-    if !arguments.quiet {
-        println!("{summary}");
+    match &scene {
+        AnyScene::Grains(scene) => grains(scene, &options, &stop),
+        AnyScene::Water(scene) => water(scene, &options, &stop),
+    }
+}
+
+fn grains(scene: &Scene, options: &Options, stop: &AtomicBool) -> Result<ExitCode> {
+    for warning in scene.warnings().iter().filter(|_| !options.quiet) {
+        eprintln!("warning: {warning}");
+    }
+    let summary = run_scene(scene, options, stop)?;
+    if !options.quiet {
+        // Everything is on disk: a reader that has gone, as `head` does, is no failure.
+        let _ = writeln!(std::io::stdout(), "{summary}");
     }
     if summary.stopped() {
         // Scenes look for files from their own folder.
@@ -76,6 +87,31 @@ pub fn run(arguments: &Run) -> Result<ExitCode> {
              {phase:?} on, and with start = \"keep\" in that one: it keeps its end, and counts \
              from its beginning",
             state.display().to_string()
+        );
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn water(scene: &WaterScene, options: &Options, stop: &AtomicBool) -> Result<ExitCode> {
+    let summary = run_water(scene, options, stop)?;
+    if !options.quiet {
+        let _ = writeln!(std::io::stdout(), "{summary}");
+    }
+    for warning in summary.warnings.iter().filter(|_| !options.quiet) {
+        eprintln!("warning: {warning}");
+    }
+    if summary.outcome == Outcome::Stopped {
+        let state = std::path::absolute(options.out.join(STATE))?;
+        let end = match scene.end.steady {
+            Some(_) => "end.max_duration",
+            None => "end.duration",
+        };
+        eprintln!(
+            "stopped before its end; to go on with the same bits, run the scene into another folder \
+             with --set water.start='{{ state = {:?} }}' --set {end}=\"{:?} s\"",
+            state.display().to_string(),
+            summary.left
         );
         return Ok(ExitCode::from(INTERRUPTED));
     }

@@ -1,7 +1,7 @@
 //! The scene that a command names: a file, a folder, or a ready-made experiment.
 
 use crate::ready;
-use crate::scene::{Document, Scene};
+use crate::scene::{AnyScene, Document};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -22,9 +22,9 @@ impl SceneArgs {
     ///
     /// # Errors
     /// A scene that is not there, or everything that is wrong with it.
-    pub fn read(&self) -> Result<(Scene, String)> {
+    pub fn read(&self) -> Result<(AnyScene, String)> {
         let (document, name) = self.document()?;
-        let scene = Scene::read(&document).map_err(counted)?;
+        let scene = AnyScene::read(&document).map_err(counted)?;
         Ok((scene, name))
     }
 
@@ -47,7 +47,7 @@ impl SceneArgs {
         }
         let ready = ready::find(&self.scene).ok_or_else(|| anyhow!(no_such(&self.scene)))?;
         let name = format!("{}/scene.toml", ready.name);
-        let document = Document::new(&name, Path::new("."), ready.scene(), &self.set);
+        let document = Document::new(&name, &ready.folder(), ready.scene(), &self.set);
         Ok((document.map_err(counted)?, ready.name.into()))
     }
 }

@@ -1,5 +1,6 @@
 //! The catalogue of all outputs: what the grains offer, and what the protocol adds.
 
+use super::pores::{self, SCALARS};
 use super::{FileKind, Frame};
 use anyhow::{Result, bail};
 use dem::output::{CONTACTS, Field, GRAINS, PROFILES, Reading, SERIES, Scalar, Storage, Variable};
@@ -57,6 +58,8 @@ pub enum Series {
     Protocol(&'static Protocol),
     /// From the grains.
     Grains(&'static Scalar),
+    /// From the water between them.
+    Water(&'static pores::Scalar),
 }
 
 impl Series {
@@ -65,6 +68,7 @@ impl Series {
         match self {
             Self::Protocol(p) => &p.variable,
             Self::Grains(s) => &s.variable,
+            Self::Water(s) => &s.variable,
         }
     }
 
@@ -77,17 +81,37 @@ impl Series {
                 now: &frame.snapshot,
                 before: &frame.before,
             }),
+            Self::Water(s) => {
+                let water = frame.water.as_ref();
+                water.map_or(f64::NAN, |water| (s.read)(frame, water))
+            }
         }
     }
 }
 
-/// All variables of `series.nc`; those of [`PROGRESS`] are always written.
+/// All variables of `series.nc` of dry grains; those of [`PROGRESS`] are always written.
 pub fn series() -> impl Iterator<Item = Series> {
     let protocol = PROGRESS.iter().chain(PROTOCOL).map(Series::Protocol);
     protocol.chain(SERIES.iter().map(Series::Grains))
 }
 
-/// Names of all variables of a file.
+/// The same with water between the grains. Its work is not in the ledger of theirs, whose
+/// residual is not one then.
+pub fn wet_series() -> impl Iterator<Item = Series> {
+    let dry = series().filter(|series| series.variable().name != "energy_residual");
+    dry.chain(SCALARS.iter().map(Series::Water))
+}
+
+/// Names of all variables of a file with water between the grains.
+pub fn wet_names(kind: FileKind) -> Vec<&'static str> {
+    match kind {
+        FileKind::Series => wet_series().map(|series| series.variable().name).collect(),
+        FileKind::Fluid => pores::FIELDS.iter().map(|f| f.variable.name).collect(),
+        _ => names(kind),
+    }
+}
+
+/// Names of all variables of a file of dry grains.
 pub fn names(kind: FileKind) -> Vec<&'static str> {
     let of = |fields: &[Field]| fields.iter().map(|field| field.variable.name).collect();
     match kind {
@@ -95,6 +119,8 @@ pub fn names(kind: FileKind) -> Vec<&'static str> {
         FileKind::Profiles => of(PROFILES),
         FileKind::Grains => of(GRAINS),
         FileKind::Contacts => of(CONTACTS),
+        // There is none: of water alone, see `super::fluid`.
+        FileKind::Fluid => Vec::new(),
     }
 }
 

@@ -2,13 +2,17 @@
 
 pub mod catalogue;
 mod contacts;
+pub mod fluid;
 mod grains;
 pub mod netcdf;
+mod pore_state;
+pub mod pores;
 mod profiles;
 pub mod provenance;
 mod rows;
 mod series;
 pub mod state;
+pub mod water_state;
 mod writer;
 
 pub use writer::Writer;
@@ -27,8 +31,8 @@ pub struct Header {
     pub title: String,
     /// The resolved scene, TOML.
     pub scene: String,
-    /// Seed of the random start.
-    pub seed: u64,
+    /// Seed of the random start; none where nothing is random.
+    pub seed: Option<u64>,
     /// Who computed: `cpu` or `gpu`.
     pub backend: &'static str,
     /// Its name.
@@ -46,6 +50,8 @@ pub enum FileKind {
     Grains,
     /// Every contact.
     Contacts,
+    /// Every cell of water.
+    Fluid,
 }
 
 impl FileKind {
@@ -56,6 +62,7 @@ impl FileKind {
             Self::Profiles => "profiles",
             Self::Grains => "grains",
             Self::Contacts => "contacts",
+            Self::Fluid => "fluid",
         }
     }
 
@@ -81,6 +88,8 @@ pub struct Plan {
     pub variables: EnumMap<FileKind, Option<Vec<String>>>,
     /// Edges of the profiles' layers along z [m], ascending.
     pub profile_edges: Vec<f64>,
+    /// The cells of the water between the grains; none: they are dry.
+    pub cells: Option<pores::Cells>,
 }
 
 /// One instant on its way to the files.
@@ -93,6 +102,8 @@ pub struct Frame {
     /// The sums at the last reading of the series, [`Sums::default`](dem::Sums) at the
     /// first one of a solver: interval means run from there.
     pub before: dem::Sums,
+    /// The water between the grains; none: they are dry now.
+    pub water: Option<Arc<pores::PoreReading>>,
     /// Number of the phase, from 0.
     pub phase: u32,
     /// Shear strain since shearing began.
@@ -103,15 +114,33 @@ pub struct Frame {
     pub due: EnumMap<FileKind, bool>,
 }
 
+/// One instant of any run, on its way to the files.
+pub trait Moment: Send + 'static {
+    /// Does it go to this file?
+    fn goes_to(&self, kind: FileKind) -> bool;
+    /// When it was [s].
+    fn time(&self) -> f64;
+}
+
+impl Moment for Frame {
+    fn goes_to(&self, kind: FileKind) -> bool {
+        self.due[kind]
+    }
+
+    fn time(&self) -> f64 {
+        self.snapshot.state.time
+    }
+}
+
 /// One file of a run.
-trait OutputFile: Send {
+trait OutputFile<F = Frame>: Send {
     /// Add `frame`.
-    fn write(&mut self, frame: &Frame) -> Result<()>;
+    fn write(&mut self, frame: &F) -> Result<()>;
     /// Put all that was added on the disk.
     fn sync(&mut self) -> Result<()>;
 }
 
-type Files = Vec<(FileKind, Box<dyn OutputFile>)>;
+type Files<F = Frame> = Vec<(FileKind, Box<dyn OutputFile<F>>)>;
 
 /// Where a file stands until it is whole and may take the place of an older one.
 fn partial(path: &Path) -> PathBuf {
@@ -132,7 +161,7 @@ fn create_files(
     for (kind, names) in &plan.variables {
         let Some(names) = names else { continue };
         let path = dir.join(kind.file_name());
-        let rows = |chunk| rows::Rows::create(&partial(&path), header, phases, chunk);
+        let rows = |chunk| rows::Rows::create(&partial(&path), header, Some(phases), chunk);
         let file = create_file(kind, names, rows, plan, bed);
         let cannot = || format!("cannot make {}", path.display());
         files.push((kind, file.with_context(cannot)?));
@@ -151,7 +180,10 @@ fn create_file(
         |all| catalogue::named(all, names, |field: &dem::output::Field| field.variable.name);
     Ok(match kind {
         FileKind::Series => {
-            let all: Vec<_> = catalogue::series().collect();
+            let all: Vec<_> = match plan.cells {
+                Some(_) => catalogue::wet_series().collect(),
+                None => catalogue::series().collect(),
+            };
             let variables = catalogue::named(&all, names, |series| series.variable().name)?;
             let variables = variables.into_iter().copied().collect();
             Box::new(series::SeriesFile::create(rows, variables)?)
@@ -162,5 +194,12 @@ fn create_file(
         }
         FileKind::Grains => Box::new(grains::GrainsFile::create(rows, fields(GRAINS)?, bed)?),
         FileKind::Contacts => Box::new(contacts::ContactsFile::create(rows, fields(CONTACTS)?)?),
+        FileKind::Fluid => {
+            let cells = plan.cells.context("there is no water between the grains")?;
+            let all: Vec<_> = pores::FIELDS.iter().collect();
+            let fields = catalogue::named(&all, names, |field| field.variable.name)?;
+            let fields = fields.into_iter().copied().collect();
+            Box::new(pores::CellsFile::create(rows, fields, cells)?)
+        }
     })
 }

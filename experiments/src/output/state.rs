@@ -2,11 +2,12 @@
 //!
 //! Layout, SI units, vectors as rows of three: `time`; `grains/`, one row a grain in the
 //! order of identities; `contacts/`, one row a contact, sorted by its two bodies, `j` being
-//! -1 - w for wall w; `walls/`, one row a wall; `box/`, the sides; `past/`, what came before.
+//! -1 - w for wall w; `walls/`, one row a wall; `box/`, the sides; `past/`, what came before; and
+//! `pore_water/`, where there is water between the grains.
 //! Attributes tell the scene, version, commit, seed and machine. Only what is needed to go on
 //! is needed to read the file; no compression, since the low bits of a state are noise.
 
-use super::{Header, partial, provenance};
+use super::{Header, partial, pore_state, provenance};
 use crate::protocol::{Past, Reference, Unfinished};
 use anyhow::{Context, Result, bail, ensure};
 use dem::{Body, Constraint, Contact, Domain, Grains, History, Horizontal, State, WallState};
@@ -37,12 +38,17 @@ pub struct Saved {
 /// A file that cannot be written.
 pub fn save(path: &Path, saved: &Saved, header: &Header) -> Result<()> {
     let partial = partial(path);
-    write(&partial, saved, header)
+    finish(path, &partial, write(&partial, saved, header))
+}
+
+/// Let the file `partial`, if it was `written`, take the place of `path`.
+pub(super) fn finish(path: &Path, partial: &Path, written: Result<()>) -> Result<()> {
+    written
         .and_then(|()| {
-            fs::File::open(&partial)?.sync_all()?;
-            Ok(fs::rename(&partial, path)?)
+            fs::File::open(partial)?.sync_all()?;
+            Ok(fs::rename(partial, path)?)
         })
-        .inspect_err(|_| drop(fs::remove_file(&partial)))
+        .inspect_err(|_| drop(fs::remove_file(partial)))
         .with_context(|| format!("cannot write the state {}", path.display()))
 }
 
@@ -54,16 +60,36 @@ pub fn load(path: &Path) -> Result<Saved> {
     read(path).with_context(|| format!("cannot read the state {}", path.display()))
 }
 
-fn write(path: &Path, saved: &Saved, header: &Header) -> Result<()> {
+/// A new state with its attributes.
+pub(super) fn start(path: &Path, header: &Header) -> Result<File> {
     let file = File::create(path)?;
     let layout = file.new_attr::<u32>().create("esker_state_layout")?;
     layout.write_scalar(&LAYOUT)?;
     for (name, text) in provenance::texts(header) {
         put_text(&file, name, &text)?;
     }
-    let seed = file.new_attr::<u64>().create("seed")?;
-    seed.write_scalar(&header.seed)?;
+    if let Some(seed) = header.seed {
+        let attribute = file.new_attr::<u64>().create("seed")?;
+        attribute.write_scalar(&seed)?;
+    }
+    Ok(file)
+}
 
+/// See that `file` is a state as this version writes it.
+pub(super) fn check_layout(file: &File) -> Result<()> {
+    let layout = file
+        .attr("esker_state_layout")
+        .and_then(|a| a.read_scalar::<u32>());
+    let layout = layout.context("not a state: it has no esker_state_layout")?;
+    ensure!(
+        layout == LAYOUT,
+        "the state has layout {layout}, this version of esker reads {LAYOUT}"
+    );
+    Ok(())
+}
+
+fn write(path: &Path, saved: &Saved, header: &Header) -> Result<()> {
+    let file = start(path, header)?;
     let state = &saved.state;
     put(&file, "time", "s", &[state.time])?;
     let group = file.create_group("box")?;
@@ -75,6 +101,9 @@ fn write(path: &Path, saved: &Saved, header: &Header) -> Result<()> {
         &saved.domain.periodic.map(u8::from),
     )?;
     write_past(&file.create_group("past")?, &saved.past)?;
+    if let Some(water) = &saved.past.water {
+        pore_state::write(&file, water)?;
+    }
 
     let grains = &state.grains;
     let group = file.create_group("grains")?;
@@ -201,7 +230,11 @@ fn read_past(group: &Group) -> Result<Past> {
         None
     };
     let strain = number("strain")?;
-    Ok(Past { strain, unfinished })
+    Ok(Past {
+        strain,
+        unfinished,
+        water: None, // until it is read
+    })
 }
 
 fn read_domain(group: &Group) -> Result<Domain> {
@@ -215,17 +248,8 @@ fn read_domain(group: &Group) -> Result<Domain> {
 
 fn read(path: &Path) -> Result<Saved> {
     let file = File::open(path)?;
-    let layout = file
-        .attr("esker_state_layout")
-        .and_then(|a| a.read_scalar::<u32>());
-    let layout = layout.context("not a state: it has no esker_state_layout")?;
-    ensure!(
-        layout == LAYOUT,
-        "the state has layout {layout}, this version of esker reads {LAYOUT}"
-    );
-    let time: Vec<f64> = get(&file, "time", 1)?;
-
-    let group = file.group("grains")?;
+    check_layout(&file)?;
+    let group = file.group("grains").context("it has no grains")?;
     let n = group.dataset("id")?.size();
     let grains = Grains {
         id: get(&group, "id", n)?,
@@ -248,7 +272,7 @@ fn read(path: &Path) -> Result<Saved> {
     let walls = walls.map(|(&offset, velocity)| WallState { offset, velocity });
 
     let state = State {
-        time: time[0],
+        time: get::<f64>(&file, "time", 1)?[0],
         contacts: read_contacts(&file.group("contacts")?, n, n_walls)?,
         grains,
         walls: walls.collect(),
@@ -256,7 +280,10 @@ fn read(path: &Path) -> Result<Saved> {
     Ok(Saved {
         state,
         domain: read_domain(&file.group("box")?)?,
-        past: read_past(&file.group("past")?)?,
+        past: Past {
+            water: pore_state::read(&file, n)?,
+            ..read_past(&file.group("past")?)?
+        },
     })
 }
 
@@ -339,12 +366,12 @@ fn horizontal_from(code: u8) -> Result<Horizontal> {
     })
 }
 
-fn put<T: H5Type>(group: &Group, name: &str, units: &str, values: &[T]) -> Result<()> {
+pub(super) fn put<T: H5Type>(group: &Group, name: &str, units: &str, values: &[T]) -> Result<()> {
     put_array(group, name, units, ArrayView1::from(values))
 }
 
 /// Write one row of N numbers for each item.
-fn put_rows<T, const N: usize>(
+pub(super) fn put_rows<T, const N: usize>(
     group: &Group,
     name: &str,
     units: &str,
@@ -373,7 +400,7 @@ fn put_text(to: &Location, name: &str, text: &str) -> Result<()> {
 }
 
 /// Read `n` numbers.
-fn get<T: H5Type>(group: &Group, name: &str, n: usize) -> Result<Vec<T>> {
+pub(super) fn get<T: H5Type>(group: &Group, name: &str, n: usize) -> Result<Vec<T>> {
     let place = || format!("{}/{name}", group.name());
     let values = group.dataset(name).and_then(|d| d.read_raw());
     let values: Vec<T> = values.with_context(place)?;
@@ -387,7 +414,7 @@ fn get<T: H5Type>(group: &Group, name: &str, n: usize) -> Result<Vec<T>> {
 }
 
 /// Read `n` rows of N numbers.
-fn get_rows<T, const N: usize>(
+pub(super) fn get_rows<T, const N: usize>(
     group: &Group,
     name: &str,
     n: usize,
@@ -401,6 +428,7 @@ fn get_rows<T, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::protocol::PastWater;
 
     /// Two grains and a wall with every field different, and numbers that a detour through
     /// text or single precision would change.
@@ -455,6 +483,16 @@ mod tests {
         let past = Past {
             strain: 5.0 / 7.0,
             unfinished,
+            water: Some(PastWater {
+                cells: [2, 1, 1],
+                state: coupling::State {
+                    pressure: vec![-0.1, 1e-310],
+                    flux: vec![[1.0 / 3.0, -2.0, 0.5], [1e300, 0.1, -0.0]],
+                    vapour: vec![0.0, 1.0 / 9.0],
+                    loads: vec![0.1, 1.0 / 11.0],
+                },
+                stiffness: Some(1e8 / 3.0),
+            }),
         };
         let domain = Domain {
             size: [1.0 / 3.0, 2.0 / 3.0],
@@ -479,7 +517,7 @@ mod tests {
         Header {
             title: "a pair".into(),
             scene: "seed = 7\n".into(),
-            seed: 7,
+            seed: Some(7),
             backend: "cpu",
             device: "a processor".into(),
         }

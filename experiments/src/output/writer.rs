@@ -1,7 +1,7 @@
 //! A thread that writes, so that stepping does not wait for the disk.
 
 use super::netcdf::keep_quiet;
-use super::{FileKind, Files, Frame, Header, Plan, create_files, partial};
+use super::{FileKind, Files, Frame, Header, Moment, Plan, create_files, partial};
 use anyhow::{Context, Result, anyhow, ensure};
 use std::path::Path;
 use std::sync::Mutex;
@@ -19,8 +19,8 @@ const SYNC_EVERY: Duration = Duration::from_secs(1);
 
 /// Writes frames on a thread of its own.
 #[derive(Debug)]
-pub struct Writer {
-    frames: Option<SyncSender<Frame>>,
+pub struct Writer<F = Frame> {
+    frames: Option<SyncSender<F>>,
     thread: Mutex<Option<JoinHandle<Result<()>>>>,
 }
 
@@ -37,7 +37,14 @@ impl Writer {
         phases: &[String],
         grains: &dem::Grains,
     ) -> Result<Self> {
-        let files = create_files(dir, header, plan, phases, grains)
+        Self::start(dir, create_files(dir, header, plan, phases, grains))
+    }
+}
+
+impl<F: Moment> Writer<F> {
+    /// Begin with files that were made in the folder `dir`, as [`partial`] ones, or could not be.
+    pub(super) fn start(dir: &Path, files: Result<Files<F>>) -> Result<Self> {
+        let files = files
             .and_then(|files| take_places(dir, &files).map(|()| files))
             .inspect_err(|_| remove_partial(dir))?;
         let (frames, waiting) = sync_channel(WAITING);
@@ -53,7 +60,7 @@ impl Writer {
 
     /// Hand over one frame. Waits only if the writer is some frames behind; an error of
     /// the writing thread comes back from a later call, or from [`finish`](Self::finish).
-    pub fn send(&self, frame: Frame) -> Result<()> {
+    pub fn send(&self, frame: F) -> Result<()> {
         let frames = self.frames.as_ref().expect("taken only at the end");
         if frames.send(frame).is_ok() {
             return Ok(());
@@ -68,7 +75,9 @@ impl Writer {
         self.frames = None;
         self.join()
     }
+}
 
+impl<F> Writer<F> {
     /// Wait for the thread and take its error, once.
     fn join(&self) -> Result<()> {
         let mut thread = self.thread.lock().expect("no panic while it is held");
@@ -82,7 +91,7 @@ impl Writer {
 
 /// A writer that goes away without being finished still writes what it was given; only
 /// its errors are lost.
-impl Drop for Writer {
+impl<F> Drop for Writer<F> {
     fn drop(&mut self) {
         self.frames = None;
         let _ = self.join();
@@ -90,7 +99,7 @@ impl Drop for Writer {
 }
 
 /// Let the new files take the places of old ones.
-fn take_places(dir: &Path, files: &Files) -> Result<()> {
+fn take_places<F>(dir: &Path, files: &Files<F>) -> Result<()> {
     let paths = || files.iter().map(|(kind, _)| dir.join(kind.file_name()));
     for path in paths() {
         ensure!(!path.is_dir(), "{} is a folder; move it", path.display());
@@ -111,7 +120,7 @@ fn remove_partial(dir: &Path) {
 }
 
 /// Write frames until the last sender is gone.
-fn write_all(dir: &Path, mut files: Files, frames: &Receiver<Frame>) -> Result<()> {
+fn write_all<F: Moment>(dir: &Path, mut files: Files<F>, frames: &Receiver<F>) -> Result<()> {
     keep_quiet();
     sync(dir, &mut files)?;
     let mut synchronised = Instant::now();
@@ -122,11 +131,11 @@ fn write_all(dir: &Path, mut files: Files, frames: &Receiver<Frame>) -> Result<(
             Err(RecvTimeoutError::Disconnected) => return sync(dir, &mut files),
         };
         for (kind, file) in &mut files {
-            let Some(frame) = frame.as_ref().filter(|frame| frame.due[*kind]) else {
+            let Some(frame) = frame.as_ref().filter(|frame| frame.goes_to(*kind)) else {
                 continue;
             };
             file.write(frame).with_context(|| {
-                let (path, time) = (dir.join(kind.file_name()), frame.snapshot.state.time);
+                let (path, time) = (dir.join(kind.file_name()), frame.time());
                 format!("cannot write {} at t = {time} s", path.display())
             })?;
         }
@@ -137,7 +146,7 @@ fn write_all(dir: &Path, mut files: Files, frames: &Receiver<Frame>) -> Result<(
     }
 }
 
-fn sync(dir: &Path, files: &mut Files) -> Result<()> {
+fn sync<F>(dir: &Path, files: &mut Files<F>) -> Result<()> {
     for (kind, file) in files {
         file.sync()
             .with_context(|| format!("cannot write {}", dir.join(kind.file_name()).display()))?;

@@ -1,7 +1,8 @@
 //! The bed as a phase measures it: strain, dilation, and what is said at the end.
 
 use super::intervals::Due;
-use super::summary::{Outcome, PhaseSummary};
+use super::summary::{Outcome, PhaseSummary, Water};
+use crate::output::pores::PoreReading;
 use crate::output::{FileKind, Frame};
 use crate::protocol::{self, Reference};
 use crate::scene::Phase;
@@ -30,11 +31,18 @@ impl Bed {
         self.reference.strain + self.own_strain(now)
     }
 
-    pub fn frame(&self, model: &Arc<Model>, now: &Arc<Snapshot>, due: Due) -> Frame {
+    pub fn frame(
+        &self,
+        model: &Arc<Model>,
+        now: &Arc<Snapshot>,
+        water: Option<PoreReading>,
+        due: Due,
+    ) -> Frame {
         Frame {
             model: model.clone(),
             snapshot: now.clone(),
             before: self.before.clone(),
+            water: water.map(Arc::new),
             phase: self.number as u32,
             strain: self.strain(now),
             dilation: measure::bed_height(model, &now.state) / self.reference.height - 1.0,
@@ -66,6 +74,7 @@ impl Bed {
         outcome: Outcome,
         steps: u64,
         now: &Snapshot,
+        water: Option<PoreReading>,
     ) -> PhaseSummary {
         let shear = phase
             .shear
@@ -78,6 +87,7 @@ impl Bed {
             height: measure::bed_height(model, &now.state),
             solid_fraction: measure::solid_fraction(model, &now.state),
             shear,
+            water: water.map(|water| Water::of(&water)),
         }
     }
 

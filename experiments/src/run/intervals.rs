@@ -1,7 +1,7 @@
 //! When which file gets a row.
 
 use crate::output::FileKind;
-use crate::scene::Output;
+use crate::scene::output::File;
 use enum_map::EnumMap;
 
 /// Which files get a row now.
@@ -9,7 +9,7 @@ pub type Due = EnumMap<FileKind, bool>;
 
 /// The first row of a run: all but the series, whose means need an interval. The writer leaves
 /// out the files that there are not.
-pub const START: Due = EnumMap::from_array([false, true, true, true]);
+pub const START: Due = EnumMap::from_array([false, true, true, true, true]);
 
 /// Is there any?
 pub fn any(due: Due) -> bool {
@@ -22,11 +22,12 @@ pub fn any(due: Due) -> bool {
 pub struct Intervals(EnumMap<FileKind, Option<u64>>);
 
 impl Intervals {
-    /// The intervals nearest to those of `output`, in whole steps of `step` [s].
-    pub fn new(output: &Output, step: f64) -> Self {
+    /// The intervals nearest to those of `files`, in whole steps of `step` [s].
+    pub fn new(files: &EnumMap<FileKind, Option<File>>, step: f64) -> Self {
         let steps = |every: f64| ((every / step).round() as u64).max(1);
-        let files = EnumMap::from_fn(|kind| output.files[kind].as_ref());
-        Self(files.map(|_, file| file.map(|file| steps(file.every))))
+        Self(EnumMap::from_fn(|kind| {
+            files[kind].as_ref().map(|file: &File| steps(file.every))
+        }))
     }
 
     /// The first step after `done` at which a file gets a row.
@@ -53,7 +54,7 @@ mod tests {
 
     #[test]
     fn rows_are_due_at_multiples_of_their_intervals() {
-        let intervals = Intervals(EnumMap::from_array([Some(10), None, Some(25), None]));
+        let intervals = Intervals(EnumMap::from_array([Some(10), None, Some(25), None, None]));
         let mut at = 0;
         let mut rows = Vec::new();
         while at < 60 {

@@ -1,6 +1,5 @@
 //! The progress bar: phase, simulated time, steps per second, time left.
 
-use crate::scene::Phase;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar on a terminal, one line a phase elsewhere, or nothing.
@@ -37,13 +36,13 @@ impl Progress {
     }
 
     /// Phase `number` begins; now its `steps` are known.
-    pub fn begin(&mut self, number: usize, phase: &Phase, steps: u64) {
+    pub fn begin(&mut self, number: usize, name: &str, steps: u64) {
         self.before += self.done;
         self.done = 0;
         self.expected[number] = steps;
         let ahead = sum(&self.expected[number..]);
         self.bar.set_length(self.before.saturating_add(ahead));
-        self.bar.set_prefix(phase.name.clone());
+        self.bar.set_prefix(name.to_owned());
     }
 
     /// The phase has made `done` steps of `step` [s].

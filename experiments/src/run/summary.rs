@@ -1,5 +1,6 @@
 //! What is said when a run has ended.
 
+use crate::output::pores::PoreReading;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -36,6 +37,28 @@ pub struct PhaseSummary {
     /// Shear strain of the phase, and shear over normal stress at the top, the mean over the last
     /// fifth of its time.
     pub shear: Option<(f64, f64)>,
+    /// The water between the grains, if there is any.
+    pub water: Option<Water>,
+}
+
+/// The water at the end of a phase.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Water {
+    /// Its mean pressure beyond that at rest [Pa].
+    pub pressure: f64,
+    /// What may be wrong with its numbers.
+    pub warnings: Vec<String>,
+}
+
+impl Water {
+    /// What is to be said of a reading.
+    pub fn of(reading: &PoreReading) -> Self {
+        let (cells, report) = (&reading.now.pressure, &reading.report);
+        Self {
+            pressure: cells.iter().sum::<f64>() / cells.len() as f64,
+            warnings: report.warnings(),
+        }
+    }
 }
 
 impl fmt::Display for PhaseSummary {
@@ -57,6 +80,12 @@ impl fmt::Display for PhaseSummary {
             match friction.is_finite() {
                 true => write!(f, "{friction:.3} (mean of the last fifth)")?,
                 false => write!(f, "unknown: nothing pressed")?,
+            }
+        }
+        if let Some(water) = &self.water {
+            write!(f, ", mean pore pressure {:.4e} Pa", water.pressure)?;
+            for warning in &water.warnings {
+                write!(f, "\n{:>14}warning: {warning}", "")?;
             }
         }
         Ok(())

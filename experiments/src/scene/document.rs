@@ -2,7 +2,11 @@
 
 use super::problem::{Problem, Problems};
 use super::tree::{self, Node, Step};
+use crate::ready;
+use anyhow::Context;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+use tempfile::TempDir;
 use toml_edit::{DocumentMut, Item, TableLike};
 
 /// A TOML text with its origin.
@@ -20,6 +24,8 @@ pub struct Document {
     file: Node,
     /// Paths that `--set` gave.
     sets: Vec<Vec<Step>>,
+    /// Where files that are part of the program are put to be read.
+    scratch: Arc<OnceLock<TempDir>>,
 }
 
 impl Document {
@@ -46,9 +52,34 @@ impl Document {
             root: file.clone(),
             file,
             sets: Vec::new(),
+            scratch: Arc::default(),
         };
         document.apply(sets)?;
         Ok(document)
+    }
+
+    /// The file that the scene calls `text`, and a name of it that holds from any folder.
+    ///
+    /// # Errors
+    /// A file of a ready-made experiment that is not there, or cannot be put on the disk.
+    pub fn locate(&self, text: &str) -> anyhow::Result<(PathBuf, String)> {
+        let from_here = self.folder.join(text);
+        let own = [Path::new(text), &from_here]
+            .into_iter()
+            .find_map(|path| path.to_str()?.strip_prefix(ready::PREFIX));
+        let Some(own) = own else {
+            let full = std::path::absolute(&from_here)?;
+            let said = full.to_str().context("its path is not Unicode")?;
+            return Ok((from_here, said.into()));
+        };
+        let bytes = ready::file(own)?;
+        if self.scratch.get().is_none() {
+            let _ = self.scratch.set(tempfile::tempdir()?);
+        }
+        let folder = self.scratch.get().context("no folder for it")?.path();
+        let path = folder.join(own.replace('/', "-"));
+        std::fs::write(&path, bytes)?;
+        Ok((path, format!("{}{own}", ready::PREFIX)))
     }
 
     fn apply(&mut self, sets: &[String]) -> Result<(), Problems> {

@@ -1,9 +1,8 @@
 //! `[grains]`: drawn at random, or from a bed or a state in a file.
 
-use super::reader::{Range, Reader, Table};
+use super::reader::{Range, Table};
 use super::units::{DENSITY, LENGTH};
 use crate::start::{RadiusLaw, Source};
-use std::path::Path;
 
 const GRAINS: &str = "[grains] with count = 1000, radius = \"10 mm\", density = \"2600 kg/m^3\"";
 const RADIUS: &str = "radius = { law = \"uniform\", min = \"9 mm\", max = \"11 mm\" }";
@@ -15,17 +14,15 @@ const SIZES: Range = Range::Within(1e-8, 1e2);
 const DENSITIES: Range = Range::Within(10.0, 1e7);
 
 /// Read `[grains]` and the file that it names.
-pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
+pub fn read(root: &Table) -> Option<Source> {
     root.missing("grains", GRAINS);
     let table = root.table("grains", GRAINS)?;
-    let folder = &reader.document().folder;
     match table.present(&["state", "bed"])[..] {
         [] => random(&table),
         ["state"] => {
             let why = "stands in the state that is read";
             table.refuse(&["count", "radius", "density"], why);
-            let path = folder.join(table.text("state")?);
-            say_where(&table, "state", &path);
+            let path = table.path("state")?;
             let saved = crate::output::state::load(&path)
                 .map_err(|error| table.wrong("state", format!("cannot be read: {error:#}")))
                 .ok()?;
@@ -38,8 +35,7 @@ pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
         ["bed"] => {
             table.refuse(&["count", "radius"], "stands in the bed that is read");
             let density = density(&table);
-            let path = folder.join(table.text("bed")?);
-            say_where(&table, "bed", &path);
+            let path = table.path("bed")?;
             let bed = crate::bed::read(&path)
                 .map_err(|error| table.wrong("bed", format!("cannot be read: {error:#}")))
                 .ok()?;
@@ -60,14 +56,6 @@ pub fn read(root: &Table, reader: &Reader) -> Option<Source> {
             table.wrong("bed", "contradicts state; remove one of them".into());
             None
         }
-    }
-}
-
-/// The resolved text may be read from another folder.
-fn say_where(table: &Table, key: &'static str, path: &Path) {
-    let full = std::path::absolute(path).ok();
-    if let Some(full) = full.as_deref().and_then(Path::to_str) {
-        table.choose(key, full);
     }
 }
 

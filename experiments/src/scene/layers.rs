@@ -100,6 +100,11 @@ impl Scene {
                 )
             })
         };
-        sheared.filter_map(warning).collect()
+        let mut warnings: Vec<String> = sheared.filter_map(warning).collect();
+        if self.water.is_none() && self.past.water.is_some() {
+            let what = "the state has water between its grains, and the scene no [water]";
+            warnings.push(format!("{what}: they go on dry"));
+        }
+        warnings
     }
 }

@@ -19,12 +19,14 @@ pub mod reader;
 pub mod time;
 pub mod tree;
 pub mod units;
+pub mod water;
 pub mod whole;
 
 pub use document::Document;
 pub use output::Output;
 pub use phase::{End, Motion, Phase, Shear};
 pub use problem::{Problem, Problems};
+pub use water::{Pores, WaterScene};
 
 use crate::protocol::{self, Past};
 use crate::start::Source;
@@ -33,6 +35,7 @@ use dem::{ContactLaw, Domain, State, Surface};
 use layers::Room;
 use reader::{Reader, Table};
 use tree::Step;
+use water::pores;
 
 /// A checked scene, SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +62,8 @@ pub struct Scene {
     pub step: f64,
     /// Surplus of the neighbour search [m]; none: chosen as it goes.
     pub skin: Option<f64>,
+    /// The water between the grains; none: they are dry.
+    pub water: Option<Pores>,
     /// The protocol.
     pub phases: Vec<Phase>,
     /// The files.
@@ -86,6 +91,30 @@ impl Scene {
     }
 }
 
+/// What a file describes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyScene {
+    /// Grains.
+    Grains(Box<Scene>),
+    /// Water alone.
+    Water(Box<WaterScene>),
+}
+
+impl AnyScene {
+    /// Read and check a scene of either kind: with `[water]` and without `[grains]` it is water
+    /// alone.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn read(document: &Document) -> Result<Self, Problems> {
+        let has = |key: &str| document.root.down(&Step::Key(key.into())).is_some();
+        Ok(match has("water") && !has("grains") {
+            true => Self::Water(Box::new(WaterScene::read(document)?)),
+            false => Self::Grains(Box::new(Scene::read(document)?)),
+        })
+    }
+}
+
 /// Title of a scene without checking the rest.
 pub fn title(document: &Document) -> Option<&str> {
     document.root.text_of("title")
@@ -102,7 +131,7 @@ fn read(reader: &Reader) -> Option<Scene> {
     }
     let seed = root.integer("seed", 0, "1").unwrap_or(1) as u64;
 
-    let origin = grains::read(&root, reader);
+    let origin = grains::read(&root);
     let (made_in, past) = match &origin {
         Some(Source::Bed { bed, .. }) => (bounds::MadeIn::of_bed(bed.size), Past::default()),
         Some(Source::State(saved)) => (bounds::MadeIn::State(saved.domain), saved.past.clone()),
@@ -143,13 +172,35 @@ fn read(reader: &Reader) -> Option<Scene> {
         law: law.unwrap_or(HARMLESS),
         gravity: bounds.map_or(glam::DVec3::ZERO, |b| b.gravity),
     };
-    let phases = phase::read(&root, &context);
     let mean_diameter = grains.as_ref().map_or(1.0, |g| 2.0 * g.mean_radius());
+    let around = bounds
+        .filter(|_| grains.is_some())
+        .map(|bounds| pores::Around {
+            size: bounds.domain.size,
+            periodic: bounds.domain.periodic,
+            diameter: mean_diameter,
+            height: match &origin {
+                Some(Source::State(saved)) => -saved.state.walls[protocol::TOP].offset,
+                _ => volume / (protocol::SETTLED * area),
+            },
+            cells: past.water.as_ref().map(|water| water.cells),
+        });
+    let wet = root.has("water");
+    let water = pores::read(&root, around.as_ref());
+    // Where the water is wrong, phases may still speak of it.
+    let edges = match &water {
+        Some(water) => Some(water.edges.clone()),
+        None => wet.then(pores::Edges::tight),
+    };
+    let phases = phase::read(&root, &context, edges.as_ref());
     let [top, bottom] = walls(&root);
     let rough = [top, bottom].map(|surface| surface == Surface::Full);
-    let output = output::read(&root, &phases, mean_diameter, rough);
+    let output = output::read(&root, &phases, mean_diameter, rough, wet);
     let (origin, grains, bounds, stated) = (origin?, grains?, bounds?, stated?);
     let (output, _) = (output?, law?);
+    if wet && water.is_none() {
+        return None;
+    }
     if phases.is_empty() || !check_width(reader, &stated, diameter) {
         return None;
     }
@@ -169,6 +220,7 @@ fn read(reader: &Reader) -> Option<Scene> {
         past,
         step: f64::NAN, // until `settle`
         skin: time.skin,
+        water,
         phases,
         output,
         text: String::new(), // until all is chosen

@@ -99,15 +99,24 @@ fn needs_sums(name: &str) -> bool {
         .any(|start| name.starts_with(start))
 }
 
-/// Read `[output]`; `phases` set the default intervals, and the mean `diameter` [m] of the
+/// Read `[output]`, of a scene that is `wet` or dry; `phases` set the default intervals, and the mean `diameter` [m] of the
 /// grains that of the profiles' layers. `rough`: have the top and the bottom wall the full law?
-pub fn read(root: &Table, phases: &[Phase], diameter: f64, rough: [bool; 2]) -> Option<Output> {
+pub fn read(
+    root: &Table,
+    phases: &[Phase],
+    diameter: f64,
+    rough: [bool; 2],
+    wet: bool,
+) -> Option<Output> {
     let total: f64 = phases.iter().map(expected).sum();
     let example = "[output] with series = { every = \"1 ms\" }";
     let table = &root.table_or_empty("output", example)?;
     let mut layer = diameter;
     let files = EnumMap::from_fn(|kind| {
-        let (file, of_profiles) = file(table, kind, total, rough)?;
+        if kind == FileKind::Fluid && !wet {
+            return None;
+        }
+        let (file, of_profiles) = file(table, kind, total, &variables(kind, rough, wet), wet)?;
         if kind == FileKind::Profiles {
             layer = of_profiles.quantity_or("layer", &LENGTH, Range::Positive, diameter);
         }
@@ -120,7 +129,7 @@ pub fn read(root: &Table, phases: &[Phase], diameter: f64, rough: [bool; 2]) -> 
 fn rows(kind: FileKind) -> (f64, &'static str) {
     match kind {
         FileKind::Series => (1000.0, "1 ms"),
-        FileKind::Profiles => (100.0, "10 ms"),
+        FileKind::Profiles | FileKind::Fluid => (100.0, "10 ms"),
         FileKind::Grains => (20.0, "50 ms"),
         FileKind::Contacts => (20.0, "0.1 s"),
     }
@@ -128,13 +137,21 @@ fn rows(kind: FileKind) -> (f64, &'static str) {
 
 /// The variables of a file unless the scene says otherwise: all, without what is always zero, the
 /// friction of frictionless walls.
-fn variables(kind: FileKind, rough: [bool; 2]) -> Vec<&'static str> {
-    let mut names = catalogue::names(kind);
+fn variables(kind: FileKind, rough: [bool; 2], wet: bool) -> Vec<&'static str> {
+    let mut names = known(kind, wet);
     for (wall, rough) in ["top", "bottom"].into_iter().zip(rough) {
         let start = format!("wall_shear_stress_{wall}");
         names.retain(|name| rough || !name.starts_with(&start));
     }
     names
+}
+
+/// All variables of a file.
+fn known(kind: FileKind, wet: bool) -> Vec<&'static str> {
+    match wet {
+        true => catalogue::wet_names(kind),
+        false => catalogue::names(kind),
+    }
 }
 
 /// About how long a phase lasts [s]; a tenth of `max_duration` where a criterion ends it.
@@ -159,12 +176,14 @@ fn expected(phase: &Phase) -> f64 {
     if expected.is_finite() { expected } else { 10.0 }
 }
 
-/// The file of a kind, and its table for what else it may say.
+/// The file of a kind with the variables `chosen` where the scene says nothing, and its table for
+/// what else it may say.
 fn file<'a>(
     outer: &Table<'a>,
     kind: FileKind,
     total: f64,
-    rough: [bool; 2],
+    chosen: &[&'static str],
+    wet: bool,
 ) -> Option<(File, Table<'a>)> {
     let key = kind.key();
     let (rows, interval) = rows(kind);
@@ -179,7 +198,7 @@ fn file<'a>(
     let example = format!("{key} = {{ every = {interval:?} }}, or \"none\"");
     let table = outer.table_or_empty(key, &example)?;
     let every = table.quantity_or("every", &TIME, Range::Positive, round(total / rows));
-    let known = catalogue::names(kind);
+    let known = known(kind, wet);
     let example = format!("variables = {:?}", &known[..known.len().min(2)]);
     let stated = table.texts("variables", &example);
     for name in stated.iter().flatten() {
@@ -190,19 +209,16 @@ fn file<'a>(
         }
     }
     let variables = stated.unwrap_or_else(|| {
-        let all = variables(kind, rough);
-        table.choose(
-            "variables",
-            toml_edit::Array::from_iter(all.iter().copied()),
-        );
-        all
+        let all = toml_edit::Array::from_iter(chosen.iter().copied());
+        table.choose("variables", all);
+        chosen.to_vec()
     });
     let variables = variables.into_iter().map(Into::into).collect();
     Some((File { every, variables }, table))
 }
 
 /// The next of 1, 2, 5 times a power of ten below `x`.
-fn round(x: f64) -> f64 {
+pub fn round(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor());
     let digit = x / power;
     let digit = if digit >= 5.0 {

@@ -5,6 +5,7 @@ use super::contact::{friction, with_friction};
 use super::layers::Room;
 use super::reader::{Range, Table};
 use super::units::{DAMPING, FREQUENCY, LENGTH, MASS, RATE, STRESS, TIME, VELOCITY};
+use super::water::pores::{self, Edges};
 use dem::{ContactLaw, StressLoad, WallMotion};
 use glam::DVec3;
 
@@ -23,6 +24,8 @@ pub struct Phase {
     pub law: ContactLaw,
     /// Acceleration of gravity [m/s²].
     pub gravity: DVec3,
+    /// The water at its walls; none: the grains are dry.
+    pub water: Option<Edges>,
     /// What becomes of the motion at its start.
     pub start: Motion,
     /// When it ends.
@@ -87,8 +90,8 @@ const TOP: &str = "top = { normal_stress = \"100 kPa\" }, or top = \"held\"";
 const SHEAR: &str = "shear = { strain_rate = \"0.25 1/s\" }";
 const END: &str = "end = { duration = \"1 s\" }";
 
-/// Read all phases.
-pub fn read(root: &Table, context: &Context) -> Vec<Phase> {
+/// Read all phases; `water`: what is at the walls where a phase says nothing, if there is water.
+pub fn read(root: &Table, context: &Context, water: Option<&Edges>) -> Vec<Phase> {
     root.missing("phase", PHASE);
     if !root.has("phase") {
         return Vec::new();
@@ -100,7 +103,7 @@ pub fn read(root: &Table, context: &Context) -> Vec<Phase> {
     for table in &tables {
         let name = name(table, &names);
         names.extend(name.clone());
-        let phase = one(table, name.unwrap_or_default(), context, settled);
+        let phase = one(table, name.unwrap_or_default(), context, water, settled);
         // What could not be read may have settled the bed or not.
         settled |= phase.as_ref().is_some_and(settles);
         phases.extend(phase);
@@ -135,7 +138,13 @@ fn settles(phase: &Phase) -> bool {
     phase.gravity.z != 0.0 || matches!(phase.top, WallMotion::Stress(_))
 }
 
-fn one(table: &Table, name: String, context: &Context, settled: bool) -> Option<Phase> {
+fn one(
+    table: &Table,
+    name: String,
+    context: &Context,
+    water: Option<&Edges>,
+    settled: bool,
+) -> Option<Phase> {
     let top = top(table, context);
     let shear = shear(table);
     let layer = if table.has("shear") {
@@ -147,6 +156,23 @@ fn one(table: &Table, name: String, context: &Context, settled: bool) -> Option<
     let law = law(table, context);
     let gravity = bounds::gravity(table).unwrap_or(context.gravity);
     let end = end(table, shear);
+    let water = pores::of_phase(table, water);
+    if let (
+        Some(Some(_)),
+        Some(End {
+            at_rest: Some(_), ..
+        }),
+    ) = (&water, end)
+    {
+        let what = "tells that grains rest, not that the water has drained";
+        let message = format!("{what}; write a duration, or water = \"none\" for a dry phase");
+        table.wrong("end", message);
+    }
+    if matches!(water, Some(Some(_))) && (gravity.x, gravity.y) != (0.0, 0.0) {
+        let what = "must be along z under water, whose pressure counts from that at rest";
+        let message = format!("{what}; leave tilt out, or write water = \"none\"");
+        table.wrong(if table.has("tilt") { "tilt" } else { "gravity" }, message);
+    }
     if table.has("shear")
         && let Some(why) = context.room.refuses(layer, settled)
     {
@@ -175,6 +201,7 @@ fn one(table: &Table, name: String, context: &Context, settled: bool) -> Option<
         layer,
         law,
         gravity,
+        water: water?,
         start,
         end: end?,
     })

@@ -7,6 +7,7 @@ use super::problem::{Problem, Problems};
 use super::tree::{Node, Step, Value};
 use super::units::Kind;
 use std::cell::RefCell;
+use std::path::PathBuf;
 
 /// A document being read, what is wrong with it so far, and what was chosen where it says
 /// nothing.
@@ -246,6 +247,17 @@ impl<'a> Table<'a> {
         }
     }
 
+    /// The file that `key` names, from the folder of the scene; the resolved text, which may be
+    /// read from another folder, says where it is.
+    pub fn path(&self, key: &'static str) -> Option<PathBuf> {
+        let located = self.reader.document().locate(self.text(key)?);
+        let (path, said) = located
+            .map_err(|error| self.wrong(key, format!("cannot be read: {error:#}")))
+            .ok()?;
+        self.choose(key, said);
+        Some(path)
+    }
+
     /// Quantity of `key` in SI units.
     pub fn quantity(&self, key: &'static str, kind: &Kind, range: Range) -> Option<f64> {
         let node = self.node(key)?;
@@ -377,6 +389,19 @@ impl<'a> Table<'a> {
             self.choose(key, *word);
         }
         self.choice(key, words).unwrap_or(default)
+    }
+
+    /// True or false, or `default`, which is then chosen.
+    pub fn flag_or(&self, key: &'static str, default: bool) -> bool {
+        match self.node(key).map(|node| &node.value) {
+            None => self.choose(key, default),
+            Some(Value::Flag(flag)) => return *flag,
+            Some(other) => {
+                let found = other.describe();
+                self.wrong(key, format!("is {found}; write {key} = true or false"));
+            }
+        }
+        default
     }
 
     /// The table of `key`, or an empty one where there is none: what is chosen in it makes it.

@@ -37,20 +37,23 @@ kinds! {
     MASS: "a mass", "kg", "150 kg";
     DENSITY: "a density", "kg/m^3", "2600 kg/m^3";
     STRESS: "a stress", "Pa", "100 kPa";
+    MODULUS: "a modulus", "Pa", "100 MPa";
     STIFFNESS: "a stiffness", "N/m", "1e6 N/m";
     DAMPING: "a damping", "N s/m", "100 N s/m";
     ANGLE: "an angle", "rad", "20 degrees";
+    VISCOSITY: "a viscosity", "Pa s", "1.8 mPa s";
+    COMPRESSIBILITY: "a compressibility", "1/Pa", "5e-10 1/Pa";
+    PERMEABILITY: "a permeability", "m^2", "1e-13 m^2";
+    PER_LENGTH: "an inverse length", "1/m", "1e5 1/m";
 }
 
 /// Dimensions that no key of a scene has, but that a slip of the pen may give.
 const OTHERS: &[(&str, &str)] = &[
-    ("m^2", "an area"),
     ("m^3", "a volume"),
     ("kg/m^2", "a mass per area"),
     ("kg/m", "a mass per length"),
     ("N", "a force"),
     ("N/m^3", "a force per volume"),
-    ("N s/m^2", "a viscosity"),
     ("J", "an energy or a torque"),
     ("W", "a power"),
     ("K", "a temperature"),

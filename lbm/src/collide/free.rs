@@ -9,7 +9,7 @@
 //! Holds for |u| ≪ 1/√3 and ν = (1/ω⁺ - 1/2)/3. With a force F the even part also gets
 //! (1 - ω⁺/2) w [9 (c·u)(c·F) - 3 u·F], as it should for the stress to be right.
 //! Source: He and Luo (1997), J. Stat. Phys. 88, 927.
-//! Proof: lbm/tests/verification/free.rs
+//! Twin: shaders/lbm/collide/free.wgsl. Proof: lbm/tests/verification/free.rs
 
 use super::{
     Cell, Coefficients, Law, Moments, first_order, forced, odd_part, relaxed, second_order, sums,

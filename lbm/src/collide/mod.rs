@@ -14,6 +14,7 @@
 //! Guo, Zheng and Shi (2002), Phys. Rev. E 65, 046308 (force).
 //! Proof: lbm/tests/verification.
 
+mod coefficients;
 mod free;
 mod porous;
 
@@ -31,6 +32,29 @@ pub(crate) struct Cell<V> {
     /// Along the forward direction of each pair.
     pub forward: [V; PAIRS],
     pub backward: [V; PAIRS],
+}
+
+impl<T: Real> Cell<T> {
+    /// From the populations of a [`State`](crate::State).
+    pub fn of_populations(populations: &[f64; 19]) -> Self {
+        let mut next = populations.iter().map(|&f| T::of(f));
+        let mut take = || next.next().expect("a cell has 19 populations");
+        Self {
+            rest: take(),
+            forward: [(); PAIRS].map(|()| take()),
+            backward: [(); PAIRS].map(|()| take()),
+        }
+    }
+
+    /// The other way.
+    pub fn populations(&self) -> [f64; 19] {
+        let mut populations = [self.rest.double(); 19];
+        let pairs = self.forward.iter().chain(&self.backward);
+        for (to, f) in populations[1..].iter_mut().zip(pairs) {
+            *to = f.double();
+        }
+        populations
+    }
 }
 
 /// What a cell is told from outside, in lattice units. Arrays have one entry for each place of

@@ -21,7 +21,7 @@
 //!
 //! Sources: Guo and Zhao (2002), Phys. Rev. E 66, 036304, for the drag in closed form. The
 //! storage in the rest population is a derivation of this project.
-//! Proof: lbm/tests/verification/porous.rs
+//! Twin: shaders/lbm/collide/porous.wgsl. Proof: lbm/tests/verification/porous.rs
 
 use super::{
     Cell, Coefficients, Law, Moments, first_order, forced, odd_part, relaxed, second_order, sums,

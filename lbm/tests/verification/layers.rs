@@ -4,7 +4,7 @@ use crate::common::{column, free, no_slip, orders, relative_error};
 use lbm::{Bed, Ends, Field, Model, Regime, Side, Signal, Solver, State};
 
 /// A bed of porosity one without drag.
-fn open() -> Bed {
+pub fn open() -> Bed {
     Bed {
         porosity: Field::Uniform(1.0),
         permeability: Field::Uniform(f64::INFINITY),
@@ -45,64 +45,65 @@ fn a_bed_that_is_all_pore_is_free_water() {
     }
 }
 
-/// Flow along a layer of free water over a bed, both driven by the same force: a parabola that
-/// goes over into Darcy's flux across √k, with one shear stress at the interface (the condition
-/// of Beavers and Joseph with a slip coefficient of one). Second order.
+/// Flow along a layer of free water over a bed on `n` cells, both driven by the same force: a
+/// parabola that goes over into Darcy's flux across √k, with one shear stress at the interface
+/// (the condition of Beavers and Joseph with a slip coefficient of one). Relative error.
 /// Source: Brinkman (1949), Appl. Sci. Res. A 1, 27; Neale and Nader (1974), Can. J. Chem. Eng.
 /// 52, 475.
+pub fn free_layer(n: usize) -> f64 {
+    let (height, nu, g, reach) = (32.0, 0.1, 1e-6, 3.0_f64);
+    let mut model = free([1, 1, n], nu);
+    model.spacing = height / n as f64;
+    model.step = Some(model.spacing.powi(2));
+    model.regime = Some(Regime::Incompressible);
+    model.ends[2] = no_slip();
+    model.acceleration = [g, 0.0, 0.0];
+    let in_bed = |k: usize| k < n / 2;
+    model.bed = Some(Bed {
+        porosity: Field::Cells((0..n).map(|k| if in_bed(k) { 0.5 } else { 1.0 }).collect()),
+        permeability: Field::Cells(
+            (0..n)
+                .map(|k| {
+                    if in_bed(k) {
+                        reach * reach
+                    } else {
+                        f64::INFINITY
+                    }
+                })
+                .collect(),
+        ),
+        forchheimer: None,
+    });
+    let mut solver = Solver::<f64>::new(model.clone(), State::at_rest(&model), 1).unwrap();
+    solver
+        .advance(40_000 * n as u64 / 32 * n as u64 / 32 / 4)
+        .unwrap();
+    // u = darcy + a e^(y/l) + b e^(-(y+h)/l) below y = 0, -g y²/2ν + s y + u(0) above, with
+    // u = 0 at y = -h and h, and u and its slope s continuous at 0.
+    let h = height / 2.0;
+    let darcy = g * reach * reach / nu;
+    let far = (-h / reach).exp();
+    // b = -darcy - a far;  u(0) = darcy + a + b far;  s = (a - b far)/l.
+    let (u_fixed, u_a) = (darcy - darcy * far, 1.0 - far * far);
+    let (s_fixed, s_a) = (darcy * far / reach, (1.0 + far * far) / reach);
+    let a = (g * h * h / (2.0 * nu) - s_fixed * h - u_fixed) / (s_a * h + u_a);
+    let b = -darcy - a * far;
+    let exact: Vec<f64> = (0..n)
+        .map(|k| {
+            let y = (k as f64 + 0.5) * model.spacing - h;
+            match in_bed(k) {
+                true => darcy + a * (y / reach).exp() + b * (-(y + h) / reach).exp(),
+                false => -g * y * y / (2.0 * nu) + (s_fixed + s_a * a) * y + u_fixed + u_a * a,
+            }
+        })
+        .collect();
+    let flux = solver.snapshot().flux;
+    relative_error(flux.iter().map(|u| u[0]), &exact)
+}
+
 #[test]
 fn a_free_layer_drags_water_through_the_top_of_the_bed() {
-    let error = |n: usize| {
-        let (height, nu, g, reach) = (32.0, 0.1, 1e-6, 3.0_f64);
-        let mut model = free([1, 1, n], nu);
-        model.spacing = height / n as f64;
-        model.step = Some(model.spacing.powi(2));
-        model.regime = Some(Regime::Incompressible);
-        model.ends[2] = no_slip();
-        model.acceleration = [g, 0.0, 0.0];
-        let in_bed = |k: usize| k < n / 2;
-        model.bed = Some(Bed {
-            porosity: Field::Cells((0..n).map(|k| if in_bed(k) { 0.5 } else { 1.0 }).collect()),
-            permeability: Field::Cells(
-                (0..n)
-                    .map(|k| {
-                        if in_bed(k) {
-                            reach * reach
-                        } else {
-                            f64::INFINITY
-                        }
-                    })
-                    .collect(),
-            ),
-            forchheimer: None,
-        });
-        let mut solver = Solver::<f64>::new(model.clone(), State::at_rest(&model), 1).unwrap();
-        solver
-            .advance(40_000 * n as u64 / 32 * n as u64 / 32 / 4)
-            .unwrap();
-        // u = darcy + a e^(y/l) + b e^(-(y+h)/l) below y = 0, -g y²/2ν + s y + u(0) above, with
-        // u = 0 at y = -h and h, and u and its slope s continuous at 0.
-        let h = height / 2.0;
-        let darcy = g * reach * reach / nu;
-        let far = (-h / reach).exp();
-        // b = -darcy - a far;  u(0) = darcy + a + b far;  s = (a - b far)/l.
-        let (u_fixed, u_a) = (darcy - darcy * far, 1.0 - far * far);
-        let (s_fixed, s_a) = (darcy * far / reach, (1.0 + far * far) / reach);
-        let a = (g * h * h / (2.0 * nu) - s_fixed * h - u_fixed) / (s_a * h + u_a);
-        let b = -darcy - a * far;
-        let exact: Vec<f64> = (0..n)
-            .map(|k| {
-                let y = (k as f64 + 0.5) * model.spacing - h;
-                match in_bed(k) {
-                    true => darcy + a * (y / reach).exp() + b * (-(y + h) / reach).exp(),
-                    false => -g * y * y / (2.0 * nu) + (s_fixed + s_a * a) * y + u_fixed + u_a * a,
-                }
-            })
-            .collect();
-        let flux = solver.snapshot().flux;
-        relative_error(flux.iter().map(|u| u[0]), &exact)
-    };
-    let errors = [16, 32, 64].map(error);
+    let errors = [16, 32, 64].map(free_layer);
     let orders = orders(&errors);
     assert!(orders.iter().all(|&o| o > 1.8), "{orders:?}: {errors:?}");
     assert!(errors[1] < 1e-2, "{errors:?}");

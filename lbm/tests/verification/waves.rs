@@ -1,50 +1,73 @@
 //! Waves of pressure: sound in gravel, and what is left of it in till.
 
-use crate::common::{column, relative_error};
+use crate::common::{column, orders, relative_error};
 use lbm::{Ends, Field, Regime, Side, Signal, Solver, State};
 use std::f64::consts::TAU;
 
-/// A standing wave in a bed obeys S ρ ∂²p/∂t² + S (μ/k) ∂p/∂t = ∇²p, with the true
-/// compressibility of water and ρ = ρ_water/φ: speed and damping.
+/// Speed [m/s] and damping [1/s] of a standing wave over `n` cells in a bed with the true
+/// compressibility of water, over those of S ρ ∂²p/∂t² + S (μ/k) ∂p/∂t = ∇²p with ρ = ρ_water/φ:
+/// c² = 1/(S ρ) and μ/(k ρ).
+pub fn speed_and_damping(n: usize, permeability: f64) -> [f64; 2] {
+    let length = 64.0;
+    let mut model = column(n, length, permeability);
+    model.ends[2] = Ends::Periodic;
+    model.regime = Some(Regime::Acoustic);
+    let wave: Vec<f64> = (0..n)
+        .map(|k| (TAU * (k as f64 + 0.5) / n as f64).cos())
+        .collect();
+    let mut state = State::at_rest(&model);
+    state.pressure = wave.iter().map(|w| 100.0 * w).collect();
+    let mut solver = Solver::<f64>::new(model.clone(), state, 1).unwrap();
+    let every = n as u64 / 8;
+    let mut amplitude = |_| {
+        let pressure = solver.snapshot().pressure;
+        solver.advance(every).unwrap();
+        pressure.iter().zip(&wave).map(|(p, w)| p * w).sum::<f64>()
+    };
+    let swing: Vec<f64> = (0..30).map(&mut amplitude).collect();
+    // At equal times apart, h, a damped oscillation obeys a'' = A a' - B a with B = e^{-γh} and
+    // A = 2 e^{-γh/2} cos ωh: least squares.
+    let sum = |f: &dyn Fn(&[f64]) -> f64| swing.windows(3).map(f).sum::<f64>();
+    let (m11, m12, m22) = (
+        sum(&|w| w[1] * w[1]),
+        sum(&|w| w[1] * w[0]),
+        sum(&|w| w[0] * w[0]),
+    );
+    let (r1, r2) = (sum(&|w| w[2] * w[1]), sum(&|w| w[2] * w[0]));
+    let det = m11 * m22 - m12 * m12;
+    let a = (r1 * m22 - r2 * m12) / det;
+    let b = (r1 * m12 - r2 * m11) / det;
+    let h = every as f64 * solver.scaling().step;
+    let damping = -b.ln() / h;
+    let omega = (a / (2.0 * b.sqrt())).acos() / h;
+    let speed = (omega * omega + damping * damping / 4.0).sqrt() * length / TAU;
+
+    let density = model.fluid.density / 0.4;
+    [
+        speed * (0.4 * model.fluid.compressibility * density).sqrt(),
+        damping * permeability * density / model.fluid.viscosity,
+    ]
+}
+
+/// Waves in gravel run and are damped as they should, to one per cent.
+/// Source: Biot (1956), J. Acoust. Soc. Am. 28, 168, for a frame that does not move.
 #[test]
 fn waves_in_gravel_have_their_speed_and_damping() {
-    for permeability in [1e-6, 1e-7] {
-        let n = 64;
-        let mut model = column(n, 64.0, permeability);
-        model.ends[2] = Ends::Periodic;
-        model.regime = None;
-        let wave = |k: usize| (TAU * (k as f64 + 0.5) / n as f64).cos();
-        let p0 = 100.0;
-        let mut state = State::at_rest(&model);
-        state.pressure = (0..n).map(|k| p0 * wave(k)).collect();
-        let mut solver = Solver::<f64>::new(model.clone(), state, 1).unwrap();
-        assert_eq!(solver.scaling().regime, Regime::Acoustic);
-        let fluid = model.fluid;
-        let density = fluid.density / 0.4;
-        let speed = 1.0 / (0.4 * fluid.compressibility * density).sqrt();
-        let damping = fluid.viscosity / (permeability * density);
-        let omega = ((speed * TAU / 64.0).powi(2) - damping * damping / 4.0).sqrt();
-        for _ in 0..6 {
-            solver.advance(30).unwrap();
-            let t = solver.time();
-            let decay = (-damping * t / 2.0).exp();
-            let swing = (omega * t).cos() + damping / (2.0 * omega) * (omega * t).sin();
-            for (k, p) in solver.snapshot().pressure.iter().enumerate() {
-                let off = p / p0 - wave(k) * decay * swing;
-                assert!(
-                    off.abs() < 1e-2,
-                    "k {permeability:e}, {t} s, cell {k}: {off}"
-                );
-            }
-        }
+    for permeability in [3e-7, 1e-7, 1e-8] {
+        let [speed, damping] = speed_and_damping(64, permeability);
+        assert!((speed - 1.0).abs() < 1e-2, "k {permeability:e}: {speed}");
+        assert!(
+            (damping - 1.0).abs() < 1e-2,
+            "k {permeability:e}: {damping}"
+        );
     }
 }
 
-/// A tide at the surface of a half-space: p = p0 e^(-z/δ) sin(ωt - z/δ), δ = √(2D/ω).
+/// A tide at the surface of a half-space, p = p0 e^(-z/δ) sin(ωt - z/δ) with δ = √(2D/ω), on `n`
+/// cells over twelve skin depths δ: the greatest relative error at eight times of a period.
 /// Source: Carslaw and Jaeger (1959), Conduction of Heat in Solids, 2.6.
-#[test]
-fn a_pressure_wave_reaches_its_skin_depth() {
-    let (n, depth, p0) = (80, 8.0, 1e3);
+pub fn tide(n: usize) -> f64 {
+    let (depth, p0) = (12.0, 1e3);
     let mut model = column(n, depth, 1e-13);
     let d = 1e-13 / (model.fluid.viscosity * 0.4 * model.fluid.compressibility);
     let omega = 2.0 * d;
@@ -68,11 +91,18 @@ fn a_pressure_wave_reaches_its_skin_depth() {
     state.pressure = profile(0.0);
     let mut solver = Solver::<f64>::new(model, state, 1).unwrap();
     let steps = (1.0 / (omega / TAU) / solver.scaling().step / 8.0) as u64;
-    for _ in 0..8 {
+    let mut error = |_| {
         solver.advance(steps).unwrap();
-        let error = relative_error(solver.snapshot().pressure, &profile(solver.time()));
-        assert!(error < 3e-3, "{} s: {error:e}", solver.time());
-    }
+        relative_error(solver.snapshot().pressure, &profile(solver.time()))
+    };
+    (0..8).map(&mut error).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_pressure_wave_reaches_its_skin_depth() {
+    let errors = [30, 60].map(tide);
+    assert!(orders(&errors)[0] > 1.8, "{errors:?}");
+    assert!(errors[1] < 3e-3, "{errors:?}");
 }
 
 /// Which regime a bed is in follows from its numbers: sound in gravel, diffusion in till.

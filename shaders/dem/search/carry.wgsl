@@ -16,10 +16,10 @@ struct Shape {
 @group(0) @binding(1) var<storage, read> order: array<u32>;
 @group(0) @binding(2) var<storage, read> heads: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read_write> rows: array<vec4<u32>>;
-@group(0) @binding(4) var<storage, read_write> scratch: array<vec4<u32>>;
-@group(0) @binding(5) var<storage, read_write> history: array<vec4<u32>>;
-@group(0) @binding(6) var<storage, read> saved_entries: array<u32>;
-@group(0) @binding(7) var<storage, read> origins: array<u32>;
+@group(0) @binding(4) var<storage, read_write> scratch: array<vec4<u32>>; // in parts
+@group(0) @binding(5) var<storage, read_write> history: array<vec4<u32>>; // in parts
+@group(0) @binding(6) var<storage, read> saved_entries: array<u32>; // in parts
+@group(0) @binding(7) var<storage, read> origins: array<u32>; // in parts
 
 const NONE: u32 = 0xffffffffu;
 
@@ -38,7 +38,7 @@ fn take_rows(
     let end = select(plan.count * shape.width, 0u, crowded(heads[plan.count]));
     for (var t = thread(group, groups, local, 64u); t < end; t += threads) {
         let old = order[t / shape.width];
-        scratch[t] = rows[half() + old * shape.width + t % shape.width];
+        set_scratch(t, rows[half() + old * shape.width + t % shape.width]);
     }
 }
 
@@ -51,7 +51,7 @@ fn put_rows(
     let threads = groups.x * groups.y * 64u;
     let end = select(plan.count * shape.width, 0u, crowded(heads[plan.count]));
     for (var t = thread(group, groups, local, 64u); t < end; t += threads) {
-        rows[half() + t] = scratch[t];
+        rows[half() + t] = scratch_at(t);
     }
 }
 
@@ -64,7 +64,7 @@ fn take_history(
     let threads = groups.x * groups.y * 64u;
     let end = select(heads[plan.count].y, 0u, crowded(heads[plan.count]));
     for (var k = thread(group, groups, local, 64u); k < end; k += threads) {
-        scratch[k] = history[saved_entries[k]];
+        set_scratch(k, history_at(saved_entries_at(k)));
     }
 }
 
@@ -77,11 +77,11 @@ fn put_history(
     let threads = groups.x * groups.y * 64u;
     let end = select(heads[plan.count].x, 0u, crowded(heads[plan.count]));
     for (var e = thread(group, groups, local, 64u); e < end; e += threads) {
-        let origin = origins[e];
+        let origin = origins_at(e);
         if origin == NONE {
-            history[e] = vec4(0u);
+            set_history(e, vec4(0u));
         } else {
-            history[e] = scratch[origin];
+            set_history(e, scratch_at(origin));
         }
     }
 }

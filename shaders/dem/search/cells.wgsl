@@ -21,7 +21,7 @@
 // Old place of each grain in the new order.
 @group(0) @binding(5) var<storage, read_write> order: array<u32>;
 // Position inside the box, and radius, in the new order [units].
-@group(0) @binding(6) var<storage, read_write> scratch: array<vec4<i32>>;
+@group(0) @binding(6) var<storage, read_write> scratch: array<vec4<i32>>; // in parts
 
 @compute @workgroup_size(64)
 fn clear(
@@ -84,5 +84,5 @@ fn rank(
     }
     let row = places[half + k];
     order[place] = k;
-    scratch[place] = vec4(inside(row.hi), row.radius_hi);
+    set_scratch(place, vec4(inside(row.hi), row.radius_hi));
 }

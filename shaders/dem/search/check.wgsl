@@ -153,7 +153,7 @@ fn lay_grid(speed: f32) {
     // About as wide as a mean grain; wider where grains are few in much space.
     var width = u32(plan.diameter + grid.near);
     var cells = max(size / width, vec3(1u));
-    while f32(cells.x) * f32(cells.y) * f32(cells.z) > f32(plan.cell_room) {
+    while too_many(cells) {
         width += width / 4u + 1u;
         cells = max(size / width, vec3(1u));
     }
@@ -167,6 +167,13 @@ fn lay_grid(speed: f32) {
     set_size(2u, grid.total + 1u, 2048u);
     set_size(3u, plan.count + 1u, 2048u);
     set_size(4u, 1u, 1u);
+}
+
+// More than there is room for? Exactly: above 2^24 f32 rounds the product, and one cell too many
+// would lie outside of its array.
+fn too_many(cells: vec3<u32>) -> bool {
+    let about = f32(cells.x) * f32(cells.y) * f32(cells.z);
+    return about > 4e9 || cells.x * cells.y * cells.z > plan.cell_room;
 }
 
 // Workgroups of `share` elements for `count` elements, along x and y.

@@ -13,19 +13,19 @@
 @group(0) @binding(0) var<storage, read> starts: array<u32>;
 @group(0) @binding(1) var<storage, read> order: array<u32>;
 // Position and radius in the new order [units].
-@group(0) @binding(2) var<storage, read> scratch: array<vec4<i32>>;
+@group(0) @binding(2) var<storage, read> scratch: array<vec4<i32>>; // in parts
 // First entry, and number of entries, of each grain.
 @group(0) @binding(3) var<storage, read_write> lists: array<vec2<u32>>;
-@group(0) @binding(4) var<storage, read_write> neighbours: array<u32>;
+@group(0) @binding(4) var<storage, read_write> neighbours: array<u32>; // in parts
 // Entries, and saved entries, of the grains before each; at the end those of all.
 @group(0) @binding(5) var<storage, read_write> heads: array<vec2<u32>>;
 // Saved entries: the word of the old neighbour, and the entry it was.
-@group(0) @binding(6) var<storage, read_write> saved: array<u32>;
+@group(0) @binding(6) var<storage, read_write> saved: array<u32>; // in parts
 @group(0) @binding(8) var<storage, read_write> searched: array<i32>;
 #ifdef HISTORY
-@group(0) @binding(7) var<storage, read_write> saved_entries: array<u32>;
+@group(0) @binding(7) var<storage, read_write> saved_entries: array<u32>; // in parts
 // The saved entry that each new one continues, or NONE.
-@group(0) @binding(9) var<storage, read_write> origins: array<u32>;
+@group(0) @binding(9) var<storage, read_write> origins: array<u32>; // in parts
 #endif
 
 const INDEX: u32 = 0x3fffffffu;
@@ -42,7 +42,7 @@ fn near(a: vec4<i32>, b: vec4<i32>) -> bool {
 
 // Number of grains near `s`; they are entered into its list if `enter`.
 fn walk(s: u32, enter: bool) -> u32 {
-    let spot = scratch[s];
+    let spot = scratch_at(s);
     let reach = u32(spot.w + plan.largest + grid.near);
     let along_x = range(0u, spot.x, reach);
     let along_y = range(1u, spot.y, reach);
@@ -56,7 +56,7 @@ fn walk(s: u32, enter: bool) -> u32 {
             let cell = (x * grid.cells.y + y) * grid.cells.z + along_z.x;
             let end = starts[cell + along_z.y];
             for (var j = starts[cell]; j < end; j++) {
-                if j == s || !near(spot, scratch[j]) {
+                if j == s || !near(spot, scratch_at(j)) {
                     continue;
                 }
                 if enter {
@@ -78,14 +78,14 @@ fn put(s: u32, entry: u32, j: u32) -> u32 {
     var word = j;
     var origin = NONE;
     for (var k = heads[s].y; k < heads[s + 1u].y; k++) {
-        if (saved[k] & INDEX) == old {
-            word |= saved[k] & ~INDEX;
+        if (saved_at(k) & INDEX) == old {
+            word |= saved_at(k) & ~INDEX;
             origin = k;
         }
     }
-    neighbours[entry] = word;
+    set_neighbours(entry, word);
 #ifdef HISTORY
-    origins[entry] = origin;
+    set_origins(entry, origin);
 #endif
     return u32(origin != NONE);
 }
@@ -103,7 +103,7 @@ fn count(
     let old = lists[order[s]];
     var touching = 0u;
     for (var e = old.x; e < old.x + old.y; e++) {
-        touching += neighbours[e] >> 31u;
+        touching += neighbours_at(e) >> 31u;
     }
     heads[s] = vec2(walk(s, false), touching);
     if s == 0u {
@@ -130,10 +130,10 @@ fn save(
     let old = lists[order[s]];
     var k = heads[s].y;
     for (var e = old.x; e < old.x + old.y; e++) {
-        if (neighbours[e] & TOUCHING) != 0u {
-            saved[k] = neighbours[e];
+        if (neighbours_at(e) & TOUCHING) != 0u {
+            set_saved(k, neighbours_at(e));
 #ifdef HISTORY
-            saved_entries[k] = e;
+            set_saved_entries(k, e);
 #endif
             k++;
         }
@@ -167,6 +167,6 @@ fn fill(
     let found = walk(s, true);
     lists[s] = vec2(heads[s].x, found);
     for (var axis = 0u; axis < 3u; axis++) {
-        searched[3u * s + axis] = scratch[s][axis];
+        searched[3u * s + axis] = scratch_at(s)[axis];
     }
 }

@@ -1,0 +1,64 @@
+//! Grains and the water between them: drag, pressure, and the order of a coupled step.
+//!
+//! The water is that of `lbm`, in cells of about two grain diameters; its pressure p is the
+//! deviation from hydrostatic, and buoyancy is added to the grains. The grains are those of
+//! `dem`. Neither knows of the other; here they meet, in the memory where they live.
+//!
+//! # What is solved
+//! Balance of water in a cell with solid flux v (volume per area), Darcy flux q, content
+//! N = β V_p p beyond that at rest:
+//!
+//! > dN/dt = -∮(v + q) dA,   q = -∇p / R,
+//!
+//! and on the grains, per volume of bed, -(1 - φ) ∇p of pressure and φ R q of drag: with q
+//! without inertia -∇p together, which is -V ∇p/(1 - φ) on a grain.
+//!
+//! # The path of one step
+//! 1. `dem` kicks and moves grains and walls: v(t + dt/2), x(t + dt).
+//! 2. `exchange.rs`: velocities are scattered to the faces of the cells, each the mean
+//!    over the grains near it, by weights that are frozen for a while (`kernel.rs`).
+//! 3. The pressure that follows at once, undrained, p = (N - ∫∮v dA dt) / (β V_p): without it
+//!    stiff water blows up, and it must cover the whole force.
+//! 4. Every n steps the lattice takes what has been collected as a source and drains it.
+//!    n follows from accuracy (`choice.rs`); every 64 steps weights, porosity and permeability
+//!    are renewed, the content of each cell kept.
+//! 5. Pressure differences across faces are gathered to the grains by the same weights: the
+//!    gather is the transpose of the scatter, so that the power of the forces is that of the
+//!    pressure on the volume, and sums of forces balance. Walls get the pressure of their cells.
+//! 6. `dem` adds contacts.
+//!
+//! Sources: Goren et al. (2010), J. Geophys. Res. 115, B09216, for the equation; Kim, Tchelepi
+//! and Juanes (2011), Comput. Methods Appl. Mech. Eng. 200, 1591, for undrained splits.
+//!
+//! # Grains that carry no load
+//! A mean velocity that counts loose grains lets the skeleton compress while they fly the other
+//! way, and pore pressure leaks away. So grains count by the load that they carry (`load.rs`),
+//! and loose ones are dragged to the mean, with the reaction on the others (`faces.rs`).
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "lanes, nodes and cells are indices of several arrays at once"
+)]
+
+mod check;
+mod choice;
+mod coupled;
+mod drag;
+mod exchange;
+mod faces;
+mod kernel;
+mod lattice;
+mod load;
+mod model;
+mod report;
+mod stiffness;
+#[cfg(test)]
+mod tests;
+mod water;
+
+pub use coupled::{Coupled, Error};
+pub use drag::{Permeability, Resistance};
+pub use model::{Cavitation, Model, NormalStress};
+pub use report::{Ledger, Report};
+pub use stiffness::skeleton_stiffness;
+pub use water::{Snapshot, State, Water};

@@ -1,0 +1,78 @@
+//! The checked description of the water in a bed, in SI numbers.
+
+use crate::Resistance;
+use lbm::{Fluid, Side};
+
+/// Everything about the water that is not its state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Number of cells along x, y and, between the walls, along z. Cells are square; about two
+    /// grain diameters are right, with which a kernel of one cell goes.
+    pub cells: [usize; 3],
+    /// What fills the pores.
+    pub fluid: Fluid,
+    /// What resists its flow.
+    pub resistance: Resistance,
+    /// The water at the bottom and the top wall: tight is [`Side::FreeSlip`], drained
+    /// [`Side::Pressure`], which acts on the wall too.
+    pub sides: [Side; 2],
+    /// What the stress on a wall that is pushed is meant to be.
+    pub normal_stress: NormalStress,
+    /// Where the water breaks; none: it bears any tension.
+    pub cavitation: Option<Cavitation>,
+    /// Load of a grain, over the mean one, at which it counts half: grains with less than that
+    /// are loose (see `load.rs`).
+    pub loose: f64,
+    /// Time over which loads are averaged [s].
+    pub load_memory: f64,
+    /// Grain steps from one fluid step to the next; none: chosen from accuracy.
+    pub interval: Option<u64>,
+    /// Grain steps between two renewals of the weights.
+    pub renewal: u64,
+    /// Stiffness M of the skeleton [Pa], if it is known: for the report, and for the choice of
+    /// sub-steps.
+    pub stiffness: Option<f64>,
+    /// Does the pressure follow the grains between two fluid steps? Without it stiff water is
+    /// unstable: kept to show that.
+    #[doc(hidden)]
+    pub predicts: bool,
+}
+
+impl Model {
+    /// Tight walls, total stress, no cavitation, and defaults that were found accurate.
+    pub fn new(cells: [usize; 3], fluid: Fluid, resistance: Resistance) -> Self {
+        Self {
+            cells,
+            fluid,
+            resistance,
+            sides: [Side::FreeSlip, Side::FreeSlip],
+            normal_stress: NormalStress::Total,
+            cavitation: None,
+            loose: 0.5,
+            load_memory: 1e-3,
+            interval: None,
+            renewal: 64,
+            stiffness: None,
+            predicts: true,
+        }
+    }
+}
+
+/// What a normal stress on a wall is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalStress {
+    /// Grains and water carry it together.
+    Total,
+    /// The grains carry it: the pressure at the wall, prescribed where it is drained and that of
+    /// its cells where it is tight, is added to the load.
+    Effective,
+}
+
+/// The least pressure of the water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cavitation {
+    /// Pressure at the top wall at which vapour opens [Pa], as the deviation that p is: vapour
+    /// pressure less that of the water at rest there, -1e5 Pa under an open sky. Farther down it
+    /// is lower by the weight of the water.
+    pub pressure: f64,
+}

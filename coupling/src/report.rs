@@ -1,0 +1,185 @@
+//! What the numbers of a coupled run imply, and what was seen while it went on.
+
+use crate::Water;
+use crate::choice::{REFUSED, WARNED};
+use std::fmt;
+
+/// What happened that a user must know.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Events {
+    /// D_n and C of the present steps.
+    pub diffusivity: f64,
+    pub courant: f64,
+    /// Lattices laid anew.
+    pub relaid: u64,
+    /// Time with vapour [s], and the most of it [m³].
+    pub vapour_time: f64,
+    pub vapour_most: f64,
+}
+
+impl Events {
+    /// Vapour of this volume [m³] for a further `time` [s].
+    pub fn see_vapour(&mut self, volume: f64, time: f64) {
+        if volume > 0.0 {
+            self.vapour_time += time;
+            self.vapour_most = self.vapour_most.max(volume);
+        }
+    }
+}
+
+/// The numbers of the coupling.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Grain steps from one fluid step to the next.
+    pub interval: u64,
+    /// Lattice steps in each.
+    pub sub_steps: u64,
+    /// Greatest diffusivity of an interval D_n, in cells².
+    pub diffusivity: f64,
+    /// Greatest drag of a lattice step σ.
+    pub drag: f64,
+    /// Cells that undrained sound crosses in an interval.
+    pub courant: f64,
+    /// Mean porosity of the bed.
+    pub porosity: f64,
+    /// Mean permeability [m²].
+    pub permeability: f64,
+    /// Storage S = φβ [1/Pa].
+    pub storage: f64,
+    /// Stiffness M of the skeleton [Pa], if it was given.
+    pub stiffness: Option<f64>,
+    /// Skempton's B = 1/(1 + S M): the share of a load that the water takes at once.
+    pub skempton: Option<f64>,
+    /// Time in which pressure drains from the bed, H²/c_v with c_v = k/(μ (S + 1/M)) [s]; without
+    /// M that of a rigid bed.
+    pub drainage_time: f64,
+    /// Height of the bed [m].
+    pub height: f64,
+    /// Share of grains that carry less than a hundredth of the mean load.
+    pub rattlers: f64,
+    /// Times that the lattice was laid anew for a bed that had changed.
+    pub relaid: u64,
+    /// Time in which there was vapour [s].
+    pub vapour_time: f64,
+    /// The greatest volume of vapour [m³].
+    pub vapour_most: f64,
+    /// The lattice.
+    pub lattice: lbm::Scaling,
+}
+
+impl Report {
+    pub(crate) fn of<const N: usize>(water: &Water<N>) -> Self {
+        let count = water.lattice.count() as f64;
+        let solid: f64 = water.solid.iter().sum();
+        let porosity = 1.0 - solid / (count * water.lattice.volume());
+        let fluid = water.model.fluid;
+        let permeability = fluid.viscosity / water.model.resistance.at(&fluid, porosity, 0.0);
+        let storage = porosity * fluid.compressibility;
+        let stiffness = water.model.stiffness;
+        let compliance = storage + stiffness.map_or(0.0, |m| 1.0 / m);
+        let height = water.lattice.height * water.lattice.cells[2] as f64;
+        let events = &water.events;
+        Self {
+            interval: water.steps.interval,
+            sub_steps: water.steps.sub_steps,
+            diffusivity: events.diffusivity,
+            drag: water.fluid.scaling().drag[1],
+            courant: events.courant,
+            porosity,
+            permeability,
+            storage,
+            stiffness,
+            skempton: stiffness.map(|m| 1.0 / (1.0 + storage * m)),
+            drainage_time: height * height * fluid.viscosity * compliance / permeability,
+            height,
+            rattlers: water.loads.rattlers(),
+            relaid: events.relaid,
+            vapour_time: events.vapour_time,
+            vapour_most: events.vapour_most,
+            lattice: *water.fluid.scaling(),
+        }
+    }
+
+    /// Deborah number: drainage time times `rate` of deformation [1/s]. Far above one the bed is
+    /// undrained, far below drained.
+    pub fn deborah(&self, rate: f64) -> f64 {
+        self.drainage_time * rate
+    }
+
+    /// What may be wrong with the numbers.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.interval > 1 && self.diffusivity > WARNED {
+            warnings.push(format!(
+                "pressure diffuses over {:.2} cells² in the {} grain steps between two fluid \
+                 steps: above {WARNED} it is off by 10 % and more, above {REFUSED} a run invents \
+                 strength",
+                self.diffusivity, self.interval
+            ));
+        }
+        if self.vapour_time > 0.0 {
+            warnings.push(format!(
+                "the water broke for {:.3e} s; at most {:.3e} m³ of vapour opened",
+                self.vapour_time, self.vapour_most
+            ));
+        }
+        warnings
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        let known = |x: Option<f64>| x.map_or("unknown".to_owned(), |x| format!("{x:.3e}"));
+        writeln!(
+            out,
+            "coupling: fluid every {} grain steps in {} of its own, D_n {:.3}, sigma {:.2}, C {:.2}",
+            self.interval, self.sub_steps, self.diffusivity, self.drag, self.courant
+        )?;
+        writeln!(
+            out,
+            "  bed: porosity {:.3}, permeability {:.2e} m², drained in {:.3e} s, {:.1} % rattlers",
+            self.porosity,
+            self.permeability,
+            self.drainage_time,
+            100.0 * self.rattlers
+        )?;
+        writeln!(
+            out,
+            "  stiffness M {} Pa, Skempton's B {}",
+            known(self.stiffness),
+            known(self.skempton)
+        )?;
+        for warning in self.warnings() {
+            writeln!(out, "  warning: {warning}")?;
+        }
+        write!(out, "  {}", self.lattice)
+    }
+}
+
+/// Energy and volume of the water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ledger {
+    /// Energy of compressed water, ½ Σ β V_p p² [J].
+    pub elastic: f64,
+    /// Water beyond that at rest, with what has been collected since the last fluid step [m³].
+    pub content: f64,
+    /// Vapour [m³].
+    pub vapour: f64,
+    /// Volume between the walls less that of all grains, at the last renewal [m³].
+    pub pores: f64,
+}
+
+impl Ledger {
+    pub(crate) fn of<const N: usize>(water: &Water<N>) -> Self {
+        let now = water.snapshot();
+        let beta = water.model.fluid.compressibility;
+        let volume = water.lattice.volume();
+        let each = now.pressure.iter().zip(&now.porosity);
+        Self {
+            elastic: each.map(|(p, phi)| 0.5 * beta * phi * volume * p * p).sum(),
+            content: now.content,
+            vapour: now.vapour.iter().sum(),
+            pores: now.porosity.iter().map(|phi| phi * volume).sum(),
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! What goes along with the grains and pushes them in every step: pore water, for one.
+//!
+//! A step of [`Solver::advance_together`] is: grains and walls move; all threads
+//! [`follow`](Companion::follow) them; where it is [`due`](Companion::due), the companion is alone
+//! for a while and [`settles`](Companion::settle); then all threads
+//! [`push`](Companion::push), and contacts add their forces. Nothing is copied: a companion reads
+//! the grains where the solver keeps them, and adds to the very sums that move them.
+//!
+//! The companion of [`Solver::advance`] is `()`: then none of this is compiled in.
+
+use crate::barrier::Barrier;
+use crate::grains::{Constraint, Horizontal};
+use crate::lanes::Row;
+use crate::slab::Slab;
+use crate::{Error, Model, Solver, WallMotion, WallState};
+use glam::DVec3;
+use std::ops::Range;
+
+/// Something that follows the motion of grains and walls and pushes them in every step.
+///
+/// Grains are in the solver's order, which changes with each neighbour search. For the same
+/// bits on any number of threads, sums must not depend on how grains are shared out.
+pub trait Companion: Sync {
+    /// Is there anything to do?
+    const ACTIVE: bool = true;
+
+    /// The order of the grains is new: before the first step, and after each neighbour search.
+    ///
+    /// # Errors
+    /// What makes it impossible to go on.
+    fn arrange(&mut self, bed: &Bed) -> Result<(), String>;
+
+    /// Grains and walls have moved: called by all threads. Velocities are those of the way
+    /// just made, half a step behind the positions.
+    fn follow(&self, moved: &Moved, threads: &Threads);
+
+    /// Is [`settle`](Self::settle) to be called in this step (the first one is 1)?
+    fn due(&self, step: u64) -> bool;
+
+    /// Alone, between the motion of a step and its forces.
+    ///
+    /// # Errors
+    /// What makes it impossible to go on.
+    fn settle(&mut self, bed: &Bed) -> Result<(), String>;
+
+    /// Add the forces [N] on the grains `own` to `force`: called by all threads, each with the
+    /// grains that it moves. `moved.step` is 0 for the forces of the instant at which the
+    /// companion joins. Forces along directions that a constraint holds act on its layer.
+    fn push(&self, moved: &Moved, threads: &Threads, own: Range<usize>, force: &mut [Row]);
+
+    /// The force on a wall along minus its normal [N], positive when it pushes the wall away from
+    /// the grains: asked by each thread, after its `push`.
+    fn wall_force(&self, wall: usize) -> f64;
+}
+
+/// No companion.
+impl Companion for () {
+    const ACTIVE: bool = false;
+
+    fn arrange(&mut self, _: &Bed) -> Result<(), String> {
+        Ok(())
+    }
+    fn follow(&self, _: &Moved, _: &Threads) {}
+    fn due(&self, _: u64) -> bool {
+        false
+    }
+    fn settle(&mut self, _: &Bed) -> Result<(), String> {
+        Ok(())
+    }
+    fn push(&self, _: &Moved, _: &Threads, _: Range<usize>, _: &mut [Row]) {}
+    fn wall_force(&self, _: usize) -> f64 {
+        0.0
+    }
+}
+
+/// The threads of a solver, as one of them sees them.
+pub struct Threads<'a> {
+    pub(crate) index: usize,
+    pub(crate) count: usize,
+    pub(crate) barrier: &'a Barrier,
+}
+
+impl Threads<'_> {
+    /// Return when all threads have called this. What each wrote before is visible to all
+    /// afterwards.
+    pub fn meet(&self) {
+        self.barrier.wait();
+    }
+
+    /// This thread's share of `count` things.
+    pub fn share(&self, count: usize) -> Range<usize> {
+        count * self.index / self.count..count * (self.index + 1) / self.count
+    }
+}
+
+/// Where grains and walls have got to in a step. Rows beyond the grains are the solver's own.
+pub struct Moved<'a> {
+    /// Number of the step since the solver began, from 1.
+    pub step: u64,
+    /// Centre [m] and radius [m].
+    pub position: &'a [Row],
+    /// Velocity half a step ago [m/s].
+    pub velocity: &'a [Row],
+    /// Walls, velocities half a step ago.
+    pub walls: &'a [WallState],
+}
+
+/// The grains between two parts of a step, in the solver's order.
+pub struct Bed<'a> {
+    /// What is solved.
+    pub model: &'a Model,
+    /// Number of the step since the solver began that moved the grains to where they are.
+    pub step: u64,
+    /// Simulated time of the positions [s].
+    pub time: f64,
+    /// Identities.
+    pub id: &'a [u32],
+    /// Centre [m] and radius [m]; not wrapped at periodic sides since the last search.
+    pub position: &'a [Row],
+    /// Masses [kg].
+    pub mass: &'a [f64],
+    /// What is held or prescribed.
+    pub constraint: &'a [Constraint],
+    /// Walls, velocities half a step ago.
+    pub walls: &'a [WallState],
+    slabs: &'a [Slab],
+}
+
+impl Bed<'_> {
+    /// Sum of the normal forces that push each grain in its contacts [N], walls included, in
+    /// the last evaluation; in the solver's order.
+    pub fn contact_loads(&self, loads: &mut Vec<f64>) {
+        loads.clear();
+        loads.resize(self.id.len(), 0.0);
+        for slab in self.slabs {
+            for slot in Slab::touches(&slab.touching, slab.pair_count) {
+                let [i, j] = slab.pairs[slot / 4][slot % 4].map(|place| place.index());
+                let between = self.position[i].xyz() - self.position[j].xyz();
+                let normal = self.model.domain.nearest_image(between).normalize_or_zero();
+                let load = slab.slots.get(slot).force.xyz().dot(normal).max(0.0);
+                for k in [i, j] {
+                    if slab.own.contains(&k) {
+                        loads[k] += load;
+                    }
+                }
+            }
+            for (wall, description) in slab.walls.iter().zip(&self.model.walls) {
+                for slot in Slab::touches(&wall.touching, wall.count) {
+                    let force = wall.slots.get(slot).force.xyz();
+                    loads[wall.grains[slot].index()] += force.dot(description.normal).max(0.0);
+                }
+            }
+        }
+    }
+}
+
+impl Solver {
+    /// Advance by `steps` time steps together with `companion`, which joins at the first call and
+    /// stays: a solver that has one cannot go on without it.
+    ///
+    /// # Errors
+    /// Those of [`advance`](Self::advance), and [`Error::Companion`].
+    pub fn advance_together<C: Companion>(
+        &mut self,
+        steps: u64,
+        companion: &mut C,
+    ) -> Result<(), Error> {
+        self.change_outside(None);
+        if !self.joined {
+            self.join(companion)?;
+        }
+        self.walk(steps, companion)
+    }
+
+    /// The grains where the solver keeps them.
+    pub fn bed(&self) -> Bed<'_> {
+        self.bed_after(0)
+    }
+
+    /// The same after this many further motions.
+    pub(crate) fn bed_after(&self, motions: u64) -> Bed<'_> {
+        let step = self.boundary.sums.steps + motions;
+        // SAFETY: the solver is not stepping, so nobody writes.
+        let position = unsafe { self.sorted.rows.position.read() };
+        Bed {
+            model: &self.model,
+            step,
+            time: self.start + step as f64 * self.model.step,
+            id: &self.sorted.id,
+            position,
+            mass: &self.sorted.mass,
+            constraint: &self.sorted.constraint,
+            walls: &self.boundary.walls,
+            slabs: &self.sorted.slabs,
+        }
+    }
+
+    /// The forces of a companion that joins act from this instant: velocities, half a step
+    /// behind, take half a kick back, as from the other forces of the start.
+    fn join<C: Companion>(&mut self, companion: &mut C) -> Result<(), Error> {
+        companion.arrange(&self.bed()).map_err(Error::Companion)?;
+        let mut pushes = Vec::new();
+        {
+            let barrier = Barrier::new(1);
+            let threads = Threads {
+                index: 0,
+                count: 1,
+                barrier: &barrier,
+            };
+            // SAFETY: the solver is not stepping, so nobody writes.
+            let moved = unsafe {
+                Moved {
+                    step: 0,
+                    position: self.sorted.rows.position.read(),
+                    velocity: self.sorted.rows.velocity.read(),
+                    walls: &self.boundary.walls,
+                }
+            };
+            let n = self.sorted.id.len();
+            pushes.resize(n, Row::ZERO);
+            companion.push(&moved, &threads, 0..n, &mut pushes);
+        }
+        let velocity = self.sorted.rows.velocity.get_mut();
+        for slab in &mut self.sorted.slabs {
+            for (own, k) in slab.own.clone().enumerate() {
+                let free = match self.sorted.constraint[k].horizontal {
+                    Horizontal::Free => DVec3::ONE,
+                    Horizontal::Held | Horizontal::Driven => DVec3::Z,
+                };
+                let push = free * pushes[k].xyz();
+                let force = &mut slab.force[own];
+                *force = Row::new(force.xyz() + push, force.w());
+                let back = 0.5 * self.sorted.kick[k] * push;
+                velocity[k] = Row::new(velocity[k].xyz() - back, velocity[k].w());
+            }
+        }
+        for (k, wall) in self.model.walls.iter().enumerate() {
+            let force = companion.wall_force(k);
+            self.boundary.companion_force[k] = force;
+            if let WallMotion::Stress(load) = wall.motion {
+                self.boundary.walls[k].velocity += 0.5 * self.model.step * force / load.mass;
+            }
+        }
+        self.joined = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,65 @@
+//! What water between grains leaves behind: its numbers in `series.nc`, and `fluid.nc`, every
+//! cell at some instants.
+
+mod cells;
+mod fields;
+mod scalars;
+
+pub(super) use cells::CellsFile;
+pub use fields::{FIELDS, Field};
+pub use scalars::{SCALARS, Scalar};
+
+use coupling::{Ledger, Report, Snapshot};
+use serde_json::{Value, json};
+
+/// Water between grains at one instant.
+#[derive(Clone, Debug)]
+pub struct PoreReading {
+    /// Pressure, flux, porosity and vapour of the cells.
+    pub now: Snapshot,
+    /// The numbers of the coupling.
+    pub report: Report,
+    /// Where the water's energy and volume are.
+    pub ledger: Ledger,
+    /// Its force on the bottom and the top wall, away from the grains [N].
+    pub on_walls: [f64; 2],
+}
+
+/// The cells of the water between grains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cells {
+    /// Their number along x, y, z.
+    pub count: [usize; 3],
+    /// Their length along x and y [m].
+    pub spacing: f64,
+}
+
+impl PoreReading {
+    /// Number of layers of cells.
+    fn layers(&self) -> usize {
+        (self.report.height / self.now.height).round() as usize
+    }
+
+    /// The report as an attribute, in SI units; `rate` is that of shear strain [1/s], zero without.
+    pub fn attribute(&self, rate: f64) -> Value {
+        let report = &self.report;
+        json!({
+            "regime": format!("{:?}", report.lattice.regime).to_lowercase(),
+            "interval": report.interval,
+            "sub_steps": report.sub_steps,
+            "D_n": report.diffusivity,
+            "sigma": report.drag,
+            "courant": report.courant,
+            "porosity": report.porosity,
+            "permeability": report.permeability,
+            "storage": report.storage,
+            "stiffness": report.stiffness,
+            "S_M": report.stiffness.map(|m| m * report.storage),
+            "B": report.skempton,
+            "height": report.height,
+            "drainage_time": report.drainage_time,
+            "deborah": report.deborah(rate),
+            "rattlers": report.rattlers,
+        })
+    }
+}

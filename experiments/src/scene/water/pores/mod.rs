@@ -1,0 +1,190 @@
+//! `[water]` beside `[grains]`: the water in the pores of a bed.
+
+mod cells;
+mod describe;
+mod edges;
+mod law;
+
+pub use edges::{Edges, of_phase};
+
+use super::liquid;
+use crate::scene::reader::{Range, Table};
+use crate::scene::units::{MODULUS, STRESS};
+use coupling::{Cavitation, Model, Resistance};
+use lbm::Fluid;
+
+/// Water between grains as a scene describes it, checked, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pores {
+    /// Number of cells along x, y and, from the bottom to the top wall, along z.
+    pub cells: [usize; 3],
+    /// Length of a cell along x and y [m].
+    pub spacing: f64,
+    /// How many cells the weights of a grain reach.
+    pub reach: Reach,
+    /// What fills the pores.
+    pub fluid: Fluid,
+    /// What resists its flow.
+    pub resistance: Resistance,
+    /// Where the water breaks; none: it bears any tension.
+    pub cavitation: Option<Cavitation>,
+    /// Grain steps from one fluid step to the next; none: chosen from accuracy.
+    pub interval: Option<u64>,
+    /// Where the stiffness of the skeleton comes from.
+    pub stiffness: Stiffness,
+    /// What is at the walls where a phase says nothing.
+    pub edges: Edges,
+}
+
+/// How many cells the weights of a grain reach along each axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Three, for cells of about two diameters.
+    Three,
+    /// Five, for cells of about one.
+    Five,
+}
+
+impl Reach {
+    /// Its number.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Three => 3,
+            Self::Five => 5,
+        }
+    }
+}
+
+/// Where the stiffness of the skeleton comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stiffness {
+    /// It is not known.
+    Unknown,
+    /// The scene says it [Pa].
+    Given(f64),
+    /// It is measured on the dry bed when water comes to it.
+    Measured,
+}
+
+/// What the water needs to know of the grains.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// Lengths of the box along x and y [m].
+    pub size: [f64; 2],
+    /// Is it periodic there?
+    pub periodic: [bool; 2],
+    /// Mean diameter [m].
+    pub diameter: f64,
+    /// Height of the bed once it is loaded, as far as it can be guessed [m].
+    pub height: f64,
+    /// Cells of the water that the grains come with, if they do.
+    pub cells: Option<[usize; 3]>,
+}
+
+const WATER: &str = "[water] with bed.permeability = \"1e-12 m^2\"";
+
+/// Read `[water]`; none: the scene has none, or one that is wrong. Without `around`, which could
+/// not be read, only words are checked.
+pub fn read(root: &Table, around: Option<&Around>) -> Option<Pores> {
+    if !root.has("water") {
+        return None;
+    }
+    let table = root.table("water", WATER)?;
+    let only_alone = "belongs to water alone; between grains the bed tells";
+    table.refuse(
+        &[
+            "precision",
+            "inertia",
+            "solid",
+            "start",
+            "acceleration",
+            "regime",
+            "step",
+            "speed",
+        ],
+        only_alone,
+    );
+    let fluid = liquid(&table);
+    let lattice = cells::read(&table, around);
+    let resistance = law::read(&table, around.map_or(1.0, |around| around.diameter));
+    let edges = edges::read(&table);
+    let cavitation = cavitation(&table);
+    let interval = interval(&table);
+    let stiffness = stiffness(&table);
+    let (cells, spacing, reach) = lattice?;
+    Some(Pores {
+        cells,
+        spacing,
+        reach,
+        fluid,
+        resistance: resistance?,
+        cavitation: cavitation?,
+        interval: interval?,
+        stiffness: stiffness?,
+        edges: edges?,
+    })
+}
+
+/// Where the water breaks, as the pressure beyond that at rest; none in the outer: it is wrong.
+fn cavitation(table: &Table) -> Option<Option<Cavitation>> {
+    if !table.has("cavitation") {
+        table.choose("cavitation", "none");
+        return Some(None);
+    }
+    if table.is_word("cavitation", "none") {
+        return Some(None);
+    }
+    let pressure = table.quantity("cavitation", &STRESS, Range::Any)?;
+    if pressure >= 0.0 {
+        let what = "is not below zero: it is vapour pressure less that of the water at rest";
+        table.wrong("cavitation", format!("{what}; write e.g. \"-100 kPa\""));
+        return None;
+    }
+    Some(Some(Cavitation { pressure }))
+}
+
+fn interval(table: &Table) -> Option<Option<u64>> {
+    if !table.has("interval") {
+        table.choose("interval", "auto");
+        return Some(None);
+    }
+    if table.is_word("interval", "auto") {
+        return Some(None);
+    }
+    let steps = table.integer("interval", 1, "64");
+    steps.map(|steps| Some(steps as u64))
+}
+
+fn stiffness(table: &Table) -> Option<Stiffness> {
+    if !table.has("stiffness") {
+        table.choose("stiffness", "measured");
+        return Some(Stiffness::Measured);
+    }
+    if table.is_word("stiffness", "measured") {
+        return Some(Stiffness::Measured);
+    }
+    if table.is_word("stiffness", "unknown") {
+        return Some(Stiffness::Unknown);
+    }
+    let modulus = table.quantity("stiffness", &MODULUS, Range::Positive);
+    modulus.map(Stiffness::Given)
+}
+
+impl Pores {
+    /// The description for a phase with `edges`, where the skeleton is so stiff [Pa].
+    pub fn model(&self, edges: &Edges, stiffness: Option<f64>) -> Model {
+        Model {
+            sides: edges.sides.clone(),
+            normal_stress: edges.normal_stress,
+            cavitation: self.cavitation,
+            interval: self.interval,
+            stiffness,
+            ..Model::new(self.cells, self.fluid, self.resistance)
+        }
+    }
+
+    /// Permeability to a slow flow at a porosity [m²].
+    pub fn permeability(&self, porosity: f64) -> f64 {
+        self.fluid.viscosity / self.resistance.at(&self.fluid, porosity, 0.0)
+    }
+}

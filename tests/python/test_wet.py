@@ -1,0 +1,102 @@
+"""Does xarray open what a run with water between its grains writes, and know its axes?"""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+HERE = Path(__file__).parent
+
+SERIES = {
+    "pore_pressure_mean": "Pa",
+    "pore_pressure_base": "Pa",
+    "pore_pressure_top": "Pa",
+    "effective_stress_top": "Pa",
+    "effective_stress_bottom": "Pa",
+    "total_stress_top": "Pa",
+    "total_stress_bottom": "Pa",
+    "friction_total": "1",
+    "darcy_flux_base": "m s-1",
+    "darcy_flux_top": "m s-1",
+    "water_volume": "m3",
+    "vapour_volume": "m3",
+    "elastic_energy_water": "J",
+    "rattlers": "1",
+}
+FLUID = {
+    "pressure": (("time", "z", "y", "x"), "Pa"),
+    "darcy_flux": (("time", "z", "y", "x", "component"), "m s-1"),
+    "porosity": (("time", "z", "y", "x"), "1"),
+    "vapour": (("time", "z", "y", "x"), "m3"),
+    "height": (("time",), "m"),
+}
+
+
+@pytest.fixture(scope="module")
+def wet(tmp_path_factory):
+    """The files of a run of wet.toml."""
+    folder = tmp_path_factory.mktemp("run") / "wet"
+    command = [os.environ["ESKER"], "run", HERE / "wet.toml", "--out", folder, "--quiet"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    names = ("series", "profiles", "grains", "fluid")
+    return {n: xarray.open_dataset(folder / f"{n}.nc", decode_timedelta=False) for n in names}
+
+
+def test_series_say_what_the_water_does(wet):
+    series = wet["series"]
+    pressed = series.phase == 0
+    for name, units in SERIES.items():
+        variable = series[name]
+        assert variable.dims == ("time",)
+        assert variable.attrs["units"] == units and variable.attrs["long_name"]
+        # A dry phase has none.
+        assert variable[pressed].isnull().all(), name
+        assert variable[~pressed].notnull().all(), name
+    assert "energy_residual" not in series
+
+
+def test_cells_lie_between_the_walls(wet):
+    fluid = wet["fluid"]
+    for name, (dimensions, units) in FLUID.items():
+        variable = fluid[name]
+        assert variable.dims == dimensions
+        assert variable.attrs["units"] == units and variable.attrs["long_name"]
+        assert variable.notnull().all(), name
+    assert fluid.sizes["x"] == fluid.sizes["y"] == 2 and fluid.sizes["z"] > 3
+    assert (np.diff(fluid.z) > 0).all() and 0 < fluid.z[0] < fluid.z[-1] < 1
+    assert fluid.z.attrs["units"] == "1" and fluid.x.attrs["units"] == "m"
+    assert set(fluid.phase.values) == {1, 2}
+    heights = wet["series"].wall_height.sel(time=fluid.time[-1])
+    assert float(fluid.height[-1]) == float(heights)
+
+
+def test_attributes_tell_the_numbers_of_the_coupling(wet):
+    for name in ("series", "fluid"):
+        attributes = wet[name].attrs
+        assert "coupling_press" not in attributes
+        load, shear = (json.loads(attributes[f"coupling_{p}"]) for p in ("load", "shear"))
+        assert load["interval"] >= 1 and 0 < load["D_n"]
+        assert 0 < load["stiffness"] == shear["stiffness"]
+        assert load["B"] == pytest.approx(1 / (1 + load["S_M"]))
+        assert load["deborah"] == 0 < shear["deborah"]
+
+
+def test_a_gpu_is_refused_with_a_remedy(tmp_path):
+    command = [os.environ["ESKER"], "run", HERE / "wet.toml", "--out", tmp_path / "run"]
+    done = subprocess.run([*command, "--backend", "gpu"], capture_output=True, text=True)
+    assert done.returncode != 0
+    assert "--backend cpu" in done.stderr and "[water]" in done.stderr
+    assert not (tmp_path / "run").exists()
+
+
+def test_check_tells_what_is_known(tmp_path):
+    command = [os.environ["ESKER"], "check", HERE / "wet.toml"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    for words in ("2 x 2 x ", "permeability", "storage S", "dry", "top at 0", "Deborah"):
+        assert words in done.stdout, done.stdout

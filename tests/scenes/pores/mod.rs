@@ -1,0 +1,116 @@
+//! Scenes of grains with water between them.
+
+mod meaning;
+mod protocol;
+
+use super::read;
+use experiments::backend::Backend;
+use experiments::run::{Options, Summary, run};
+use experiments::scene::Scene;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
+
+/// A bed of two hundred grains that is pressed dry, loaded under water and sheared under water.
+const WET: &str = r#"
+title = "Small and wet"
+
+[box]
+size    = ["4 mm", "4 mm"]
+gravity = "none"
+
+[grains]
+count   = 200
+radius  = { law = "uniform", min = "0.45 mm", max = "0.55 mm" }
+density = "2600 kg/m^3"
+
+[contact]
+normal     = { stiffness = "3e4 N/m", restitution = 0.3 }
+tangential = { stiffness = "1e4 N/m", friction = 0.5 }
+
+[water]
+bed.permeability = "2e-13 m^2"
+sides.top        = "drained"
+
+[[phase]]
+name     = "press"
+top      = { normal_stress = "10 kPa", damping = "0.05 N s/m" }
+friction = 0.1
+water    = "none"
+end      = { at_rest = 1e-4, max_duration = "0.2 s" }
+
+[[phase]]
+name = "load"
+top  = { normal_stress = "12 kPa", damping = "0 N s/m" }
+end  = { duration = "2 ms" }
+
+[[phase]]
+name  = "shear"
+top   = { normal_stress = "12 kPa" }
+shear = { strain_rate = "5 1/s" }
+end   = { duration = "1 ms" }
+
+[output]
+series.every = "50 us"
+fluid.every  = "0.5 ms"
+grains       = "none"
+profiles     = "none"
+"#;
+
+fn wet(sets: &[&str]) -> Scene {
+    read(WET, sets).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn options(out: &Path, threads: usize) -> Options {
+    Options {
+        out: out.to_path_buf(),
+        backend: Backend::Cpu,
+        threads,
+        force: true,
+        quiet: true,
+    }
+}
+
+fn go(scene: &Scene, out: &Path, threads: usize) -> Summary {
+    run(scene, &options(out, threads), &AtomicBool::new(false)).unwrap_or_else(|e| panic!("{e:#}"))
+}
+
+/// All values of a variable of a file.
+fn values(file: &Path, variable: &str) -> Vec<f64> {
+    let file = experiments::output::netcdf::open(file).unwrap();
+    let found = file.variable(variable);
+    let found = found.unwrap_or_else(|| panic!("no {variable}"));
+    found.get_values(..).unwrap()
+}
+
+/// Results of the phase that presses the bed dry, made once.
+fn pressed() -> PathBuf {
+    static MADE: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = MADE.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let mut scene = wet(&[]);
+        scene.phases.truncate(1);
+        go(&scene, folder.path(), 1);
+        folder
+    });
+    folder.path().to_path_buf()
+}
+
+/// The phases that come after, from that state.
+fn after(sets: &[&str]) -> Scene {
+    read(&text_after(&pressed(), "press"), sets).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The scene of the phases after `last`, from the state in the folder `from`.
+fn text_after(from: &Path, last: &str) -> String {
+    let (head, phases) = WET.split_once("[[phase]]").unwrap();
+    let named = format!("\"{last}\"");
+    let (_, rest) = phases.split_once(&named).unwrap();
+    let (_, rest) = rest.split_once("[[phase]]").unwrap();
+    let (before, grains) = head.split_once("[box]").unwrap();
+    let (_, contact) = grains.split_once("[contact]").unwrap();
+    let state = from.join("state.h5");
+    format!(
+        "{before}[box]\ngravity = \"none\"\n[grains]\nstate = {state:?}\n[contact]{contact}[[phase]]{rest}"
+    )
+}
