@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The studies of the lattice: tables (*.csv) and convergence.png in this folder. A quarter of an hour.
+# The studies of the lattice: tables (*.csv) and convergence.png in this folder. Five minutes on two cores.
 # One of them: lbm/studies/run.sh orders (or cavity, spheres, packing, numbers).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
