@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import xarray
 
+from labels import check_labels, check_variable
+
 FILES = ("series", "profiles", "grains", "contacts")
 
 # What users and later versions rely on: names, dimensions and units.
@@ -69,20 +71,12 @@ VARIABLES["series"] |= {name: (("time",), "J") for name in LEDGER}
     ("file", "name"), [(file, name) for file in VARIABLES for name in VARIABLES[file]]
 )
 def test_variable_is_there_with_its_dimensions_and_units(files, file, name):
-    dimensions, units = VARIABLES[file][name]
-    variable = files[file][name]
-    assert variable.dims == dimensions
-    assert variable.attrs["units"] == units
-    assert variable.size > 1
+    check_variable(files[file][name], *VARIABLES[file][name])
 
 
 @pytest.mark.parametrize("file", FILES)
 def test_everything_has_a_long_name_and_units(files, file):
-    for name, variable in files[file].variables.items():
-        assert variable.attrs.get("long_name"), name
-        # Labels and flags carry no units.
-        if variable.dtype.kind == "f":
-            assert variable.attrs.get("units"), name
+    check_labels(files[file])
 
 
 @pytest.mark.parametrize("file", FILES)

@@ -6,6 +6,8 @@ import subprocess
 import numpy as np
 import pytest
 
+from labels import check_labels, check_variable
+
 # What users and later versions rely on: names, dimensions and units.
 VARIABLES = {
     "series": {
@@ -29,19 +31,12 @@ VARIABLES = {
     ("file", "name"), [(file, name) for file in VARIABLES for name in VARIABLES[file]]
 )
 def test_variable_is_there_with_its_dimensions_and_units(water, file, name):
-    dimensions, units = VARIABLES[file][name]
-    variable = water[file][name]
-    assert variable.dims == dimensions
-    assert variable.attrs["units"] == units
-    assert variable.size > 1
+    check_variable(water[file][name], *VARIABLES[file][name])
 
 
 @pytest.mark.parametrize("file", VARIABLES)
 def test_everything_has_a_long_name_and_units(water, file):
-    for name, variable in water[file].variables.items():
-        assert variable.attrs.get("long_name"), name
-        if variable.dtype.kind == "f":
-            assert variable.attrs.get("units"), name
+    check_labels(water[file])
 
 
 @pytest.mark.parametrize("file", VARIABLES)

@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 import xarray
 
+from conftest import run_of
+from labels import check_labels, check_variable
+
 HERE = Path(__file__).parent
 
 SERIES = {
@@ -39,10 +42,7 @@ FLUID = {
 @pytest.fixture(scope="module")
 def wet(tmp_path_factory):
     """The files of a run of wet.toml."""
-    folder = tmp_path_factory.mktemp("run") / "wet"
-    command = [os.environ["ESKER"], "run", HERE / "wet.toml", "--out", folder, "--quiet"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    folder = run_of("wet.toml", tmp_path_factory.mktemp("run") / "wet")
     names = ("series", "profiles", "grains", "fluid")
     return {n: xarray.open_dataset(folder / f"{n}.nc", decode_timedelta=False) for n in names}
 
@@ -52,11 +52,11 @@ def test_series_say_what_the_water_does(wet):
     pressed = series.phase == 0
     for name, units in SERIES.items():
         variable = series[name]
-        assert variable.dims == ("time",)
-        assert variable.attrs["units"] == units and variable.attrs["long_name"]
+        check_variable(variable, ("time",), units)
         # A dry phase has none.
         assert variable[pressed].isnull().all(), name
         assert variable[~pressed].notnull().all(), name
+    check_labels(series)
     assert "energy_residual" not in series
 
 
@@ -64,12 +64,12 @@ def test_cells_lie_between_the_walls(wet):
     fluid = wet["fluid"]
     for name, (dimensions, units) in FLUID.items():
         variable = fluid[name]
-        assert variable.dims == dimensions
-        assert variable.attrs["units"] == units and variable.attrs["long_name"]
+        check_variable(variable, dimensions, units)
         assert variable.notnull().all(), name
     assert fluid.sizes["x"] == fluid.sizes["y"] == 2 and fluid.sizes["z"] > 3
     assert (np.diff(fluid.z) > 0).all() and 0 < fluid.z[0] < fluid.z[-1] < 1
     assert fluid.z.attrs["units"] == "1" and fluid.x.attrs["units"] == "m"
+    check_labels(fluid)
     assert set(fluid.phase.values) == {1, 2}
     heights = wet["series"].wall_height.sel(time=fluid.time[-1])
     assert float(fluid.height[-1]) == float(heights)

@@ -99,11 +99,23 @@ impl<'a> Reader<'a> {
         !self.problems.borrow().is_empty()
     }
 
+    /// What was read, if nothing was wrong.
+    ///
+    /// # Errors
     /// All problems, in the order of the lines.
-    pub fn problems(self) -> Problems {
+    ///
+    /// # Panics
+    /// If nothing was read and yet no problem noted.
+    pub fn finish<T>(self, read: Option<T>) -> Result<T, Problems> {
         let mut problems = self.problems.into_inner();
         problems.sort_by_key(|problem| problem.line);
-        Problems(problems)
+        match read {
+            Some(read) if problems.is_empty() => Ok(read),
+            None if problems.is_empty() => {
+                unreachable!("whatever cannot be read is noted as a problem")
+            }
+            _ => Err(Problems(problems)),
+        }
     }
 
     /// Note a problem with the key at `path`.

@@ -35,13 +35,7 @@ impl WaterScene {
     pub fn read(document: &Document) -> Result<Self, Problems> {
         let reader = Reader::new(document);
         let scene = read(&reader);
-        match (scene, reader.problems()) {
-            (Some(scene), Problems(none)) if none.is_empty() => Ok(scene),
-            (None, Problems(none)) if none.is_empty() => {
-                unreachable!("whatever cannot be read is noted as a problem")
-            }
-            (_, problems) => Err(problems),
-        }
+        reader.finish(scene)
     }
 
     /// Steps until the end, at most; what round-off adds to a whole number is no step.

@@ -1,0 +1,121 @@
+//! What is read from the water. Reading never changes the run.
+
+use super::Water;
+use crate::Model;
+#[cfg(test)]
+use dem::Row;
+
+/// Water at one instant, one entry a cell: x fastest, then y, then z.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// Height of the bottom and of a cell [m].
+    pub bottom: f64,
+    /// Height of a cell [m].
+    pub height: f64,
+    /// Pressure beyond hydrostatic that the grains feel [Pa].
+    pub pressure: Vec<f64>,
+    /// Darcy flux at the last fluid step [m/s].
+    pub flux: Vec<[f64; 3]>,
+    /// Porosity at the last renewal.
+    pub porosity: Vec<f64>,
+    /// Volume of vapour [m³].
+    pub vapour: Vec<f64>,
+    /// Water beyond that at rest in all cells, what is still collected included [m³].
+    pub content: f64,
+}
+
+/// What must be known of the water to go on, beside the grains.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Pressure [Pa], one entry a cell: x fastest, then y, then z.
+    pub pressure: Vec<f64>,
+    /// Darcy flux [m/s].
+    pub flux: Vec<[f64; 3]>,
+    /// Volume of vapour [m³].
+    pub vapour: Vec<f64>,
+    /// Mean load of each grain [N], by identity.
+    pub loads: Vec<f64>,
+}
+
+impl<const N: usize> Water<N> {
+    /// The description.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Pressure that the grains feel [Pa], x slowest and z fastest.
+    pub fn pressure(&self) -> &[f64] {
+        // SAFETY: a shared borrow between steps: nobody writes.
+        unsafe { self.fields.pressure.read() }
+    }
+
+    /// Force of the water on the bottom and the top wall, away from the grains [N], buoyancy left
+    /// out.
+    pub fn on_walls(&self) -> [f64; 2] {
+        [0, 1].map(|side| self.pass().on_wall(side))
+    }
+
+    /// The water now.
+    pub fn snapshot(&self) -> Snapshot {
+        let lattice = &self.lattice;
+        let count = lattice.count();
+        let mut now = Snapshot {
+            bottom: lattice.bottom,
+            height: lattice.height,
+            pressure: vec![0.0; count],
+            flux: self.fluid.snapshot().flux,
+            porosity: vec![0.0; count],
+            vapour: vec![0.0; count],
+            content: 0.0,
+        };
+        // SAFETY: a shared borrow between steps: nobody writes.
+        let collected = unsafe { self.fields.collected.read() };
+        for cell in 0..count {
+            let at = lattice.cell_of_lbm(cell);
+            now.pressure[at] = self.pressure()[cell];
+            now.porosity[at] = 1.0 - self.solid[cell] / lattice.volume();
+            now.vapour[at] = self.vapour[cell];
+            now.content += self.content[cell] - self.vapour[cell] - collected[cell];
+        }
+        now
+    }
+
+    /// What must be known to go on.
+    pub fn state(&self) -> State {
+        let now = self.snapshot();
+        State {
+            pressure: now.pressure,
+            flux: now.flux,
+            vapour: now.vapour,
+            loads: self.loads.mean.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+impl<const N: usize> Water<N> {
+    /// Volume that faces have brought to the cells since the last fluid step [m³].
+    pub(crate) fn collected(&self) -> &[f64] {
+        // SAFETY: tests that read have one thread.
+        unsafe { self.fields.collected.read() }
+    }
+
+    /// Mean velocities of the faces.
+    pub(crate) fn velocities(&self) -> &[Row] {
+        // SAFETY: as above.
+        unsafe { self.fields.velocity.read() }
+    }
+
+    /// The pressure, to be told what it is.
+    ///
+    /// # Safety
+    /// There is one thread.
+    #[allow(
+        clippy::mut_from_ref,
+        reason = "a companion follows through a shared borrow"
+    )]
+    pub(crate) unsafe fn pressure_to_tell(&self) -> &mut [f64] {
+        // SAFETY: the caller's promise.
+        unsafe { self.fields.pressure.write(0..self.lattice.count()) }
+    }
+}
