@@ -1,9 +1,9 @@
 //! What water costs: the dry step, the step with water, and where the difference goes.
 //!
-//! `cargo run --release -p coupling --example speed -- [TILES] [THREADS] [STEPS]`
+//! `cargo run --release -p coupling --example speed -- [TILES] [THREADS] [STEPS] [DIAMETERS]`
 //!
 //! A bed of 1000 grains, pressed here, is laid TILES x TILES times side by side. Dry and wet runs
-//! take turns, and medians are printed.
+//! take turns, and medians are printed. Cells are DIAMETERS grain diameters wide, 2 or 1.
 
 use coupling::{Coupled, Model, Permeability, Resistance};
 use dem::contact::{Linear, Sliding, Tension};
@@ -12,9 +12,10 @@ use glam::DVec3;
 use lbm::{Fluid, Side, Signal};
 use std::time::Instant;
 
-/// Side of one tile [m], and of a cell.
+/// Side of one tile [m], and cells of two diameters along it and upwards.
 const SIDE: f64 = 0.2;
 const CELLS: usize = 5;
+const LAYERS: usize = 4;
 const TURNS: usize = 5;
 
 fn main() {
@@ -25,18 +26,28 @@ fn main() {
     let tiles = numbers.next().unwrap_or(1);
     let threads = numbers.next().unwrap_or(1);
     let steps = numbers.next().unwrap_or(2048) as u64;
+    match numbers.next().unwrap_or(2) {
+        2 => compare::<3>(tiles, threads, steps),
+        1 => compare::<5>(tiles, threads, steps),
+        other => panic!("cells of {other} diameters are none of 2 and 1"),
+    }
+}
+
+/// Dry and wet steps in turns, in cells whose kernel reaches `N`.
+fn compare<const N: usize>(tiles: usize, threads: usize, steps: u64) {
     let state = tile(&pressed(), tiles);
     let grains = state.grains.len();
     let model = model(tiles, 1e5, 78.0, 0.5, 0.0);
     println!("{grains} grains, {threads} threads, {steps} steps, medians of {TURNS} turns");
 
+    let finer = N / 2;
+    let cells = [CELLS * finer * tiles, CELLS * finer * tiles, LAYERS * finer];
     let water = |permeability: f64, interval: Option<u64>| {
         let law = Resistance::Darcy(Permeability::constant(permeability));
-        let cells = [CELLS * tiles, CELLS * tiles, 4];
         let mut water = Model::new(cells, WATER, law);
         water.sides[1] = Side::Pressure(Signal::Steady(0.0));
         water.interval = interval;
-        let bed = Coupled::<3>::new(model.clone(), state.clone(), water, None, threads);
+        let bed = Coupled::<N>::new(model.clone(), state.clone(), water, None, threads);
         bed.expect("the water is possible")
     };
     // Fluid steps so rare that they cost nothing, then every 16 steps, then every one.

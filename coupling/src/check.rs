@@ -1,6 +1,5 @@
 //! Is a description of the water possible with these grains?
 
-use crate::kernel::half_width;
 use crate::lattice::Lattice;
 use crate::{Error, Model};
 use dem::measure::{bottom_wall, top_wall};
@@ -76,8 +75,6 @@ pub(crate) fn check<const N: usize>(
     let lattice = Lattice {
         cells: model.cells,
         spacing,
-        pad: half_width(N) + 1,
-        pad_z: half_width(N),
         bottom: 0.0,
         height: 0.0,
     };

@@ -6,6 +6,10 @@
 //! So n is the largest power of two, up to the renewal, with D_n ≤ 0.25. Where even one grain
 //! step is too long, the fluid steps every time, several lattice steps each.
 //!
+//! Pores are open where pressure spreads over more than 16 cells² in a grain step, at real water and
+//! grains of a millimetre over thousands, or without bounds where there is no grain: there
+//! `open/mod.rs` solves for the water's momentum, every grain step, and nothing is chosen.
+//!
 //! A lattice step is diffusive and accurate up to D of about 0.15; `lbm` refuses longer ones, so
 //! sub-steps are doubled until it agrees. At small n stiff water on a soft skeleton resonates with
 //! the lattice's own waves (D_n above 0.2 while sound crosses less than 1.5 cells an interval):
@@ -41,9 +45,43 @@ pub(crate) struct Situation<'a> {
     pub step: f64,
 }
 
+/// The diffusivity of a grain step above which pores are open: a lattice would need dozens of
+/// sub-steps.
+const OPEN: f64 = 16.0;
+
+/// Is what open pores need there? The water's mass enters the grains' motion a step late, which
+/// is stable while ρ (1 - φ)/φ < ρ_s: at 1.6 times the density of water down to a porosity of 0.385.
+pub(crate) fn open_is_possible(model: &Model, density: f64) -> Result<(), Error> {
+    if model.cavitation.is_some() {
+        return Err(Error::Invalid(
+            "cavitation is not known to water in open pores (so permeable a bed is that, or one \
+             with cells of clear water): leave it out, or bound the permeability from above"
+                .into(),
+        ));
+    }
+    let least = 1.6 * model.fluid.density;
+    if density < least {
+        return Err(Error::Invalid(format!(
+            "grains of {density:.0} kg/m³ are too light for water in open pores, whose inertia \
+             acts a step late: they need {least:.0} kg/m³"
+        )));
+    }
+    Ok(())
+}
+
 impl Situation<'_> {
-    /// Choose the interval and its sub-steps for a lattice with this bed.
-    pub fn choose(&self, fluid: &mut lbm::Model, thickness: f64) -> Result<Steps, Error> {
+    /// Are the pores so open that the water's own mass holds it, and no lattice?
+    pub fn is_open(&self) -> bool {
+        // Infinite where there is no grain.
+        self.model.interval.is_none() && self.diffusivity > OPEN
+    }
+
+    /// Choose the interval and its sub-steps for a lattice that `fits`.
+    pub fn choose(
+        &self,
+        fluid: &mut lbm::Model,
+        fits: impl Fn(&lbm::Model) -> Result<Scaling, lbm::Error>,
+    ) -> Result<Steps, Error> {
         if !self.diffusivity.is_finite() {
             return Err(Error::Invalid(
                 "a cell of the bed is of infinite permeability, since hardly a grain is in it: \
@@ -59,7 +97,7 @@ impl Situation<'_> {
         let mut sub_steps = if resonates || many { 4 } else { 1 };
         loop {
             fluid.step = Some(interval as f64 * self.step / sub_steps as f64);
-            match Scaling::choose::<f64>(fluid, thickness) {
+            match fits(fluid) {
                 Ok(_) => break,
                 Err(error) if sub_steps >= SUB_STEPS_MOST => return Err(Error::Water(error)),
                 Err(_) => sub_steps *= 2,

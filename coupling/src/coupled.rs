@@ -14,6 +14,9 @@ pub enum Error {
     /// The water.
     #[error("water: {0}")]
     Water(#[from] lbm::Error),
+    /// The device of a coupled bed on the GPU fails.
+    #[error(transparent)]
+    Device(#[from] shaders::Error),
 }
 
 /// A bed with its water; the kernel reaches `N` cells, 3 in cells of two grain diameters, 5 in
@@ -67,6 +70,6 @@ impl<const N: usize> Coupled<N> {
 
     /// Where the water's energy and volume are.
     pub fn ledger(&self) -> Ledger {
-        Ledger::of(&self.water)
+        Ledger::of(&self.water, &self.grains)
     }
 }

@@ -15,9 +15,15 @@
 //! of k_n = 1e9 N/m too weak a drag shows: pressure at T = 0.4 was 13.6 % low with implicit drag,
 //! 1/(1 + r), every 8 steps, 10.8 % with this one every 4, 10 % with drag in every step.
 
-use crate::exchange::{Exchange, Layout, Touch, gather_all};
-use crate::kernel::{folded_cell, folded_face};
+use crate::exchange::Exchange;
+use crate::gather::Given;
+use crate::kernel::half_width;
+use crate::kernels::{Kernels, Scatter};
 use crate::lattice::Lattice;
+use crate::ledger::book_given;
+use crate::nodes::{Plane, Scratch};
+use crate::open::End;
+use crate::terms::{Moments, SHEETS, Sheets, TERMS};
 use dem::{Moved, Row, Shared, Threads, WallState};
 use std::ops::Range;
 
@@ -42,56 +48,76 @@ pub(crate) struct Frozen {
     pub walls: Vec<[f64; 2]>,
 }
 
-/// What changes in every step, one entry a cell or its lower faces.
+/// What changes in every step.
 pub(crate) struct Fields {
-    /// Mean velocity [m/s].
+    /// Σ w V B v and Σ γ B v over the grains of each cell, one entry a group.
+    pub moments: Shared<Moments>,
+    pub loose: Shared<Moments>,
+    /// Mean velocity [m/s] of the lower faces of each cell.
     pub velocity: Shared<Row>,
     /// R_f [N].
-    reaction: Shared<Row>,
-    /// Padded: what faces push with per w V K, and s_f v_f.
-    push: Shared<Row>,
-    mean: Shared<Row>,
-    /// Σ γ K v of loose grains, one array a part.
-    loose: Vec<Shared<Row>>,
-    /// ∫Q dt since the last fluid step [m³].
+    pub reaction: Shared<Row>,
+    /// What cells read of that with which faces push per w V K, and of s_f v_f; one entry a group.
+    pub push: Shared<Sheets>,
+    pub mean: Shared<Sheets>,
+    /// Of the work on planes.
+    numbers: Shared<f64>,
+    lines: Shared<Row>,
+    /// What the water keeps of the push at the faces [N]; empty where it keeps nothing.
+    pub kept: Vec<Row>,
+    /// Half cells at the ends of columns through which water flows; empty as well.
+    pub ends: Vec<[End; 2]>,
+    /// ∫Q dt since the last fluid step [m³], one entry a cell.
     pub collected: Shared<f64>,
     /// Pressure that grains feel [Pa].
     pub pressure: Shared<f64>,
     /// Force on the bottom and the top wall, away from the grains [N], one entry a plane.
     pub on_walls: Shared<[f64; 2]>,
+    /// Σ power that grains have lost by drag [W], one entry a grain in the present order, and that
+    /// faces have given back, one a plane (`ledger.rs`).
+    pub lost: Shared<f64>,
+    pub given: Shared<[f64; 2]>,
 }
 
 impl Fields {
-    pub fn new(lattice: &Lattice) -> Self {
-        let padded = lattice.padded()[0] * lattice.padded_plane();
+    pub fn new<const N: usize>(lattice: &Lattice) -> Self {
+        let planes = lattice.cells[0];
+        let groups = planes * lattice.groups();
         let rows = |count| Shared::new(vec![Row::ZERO; count]);
+        let numbers = |count| Shared::new(vec![0.0; count]);
+        let moments = || Shared::new(vec![[Row::ZERO; TERMS]; groups]);
+        let sheets = || Shared::new(vec![[Row::ZERO; SHEETS]; groups]);
         let count = lattice.count();
+        let plane = Plane::<N> {
+            lattice: *lattice,
+            plane: 0,
+        };
+        let [scratch, lines] = plane.needs();
         Self {
+            moments: moments(),
+            loose: moments(),
             velocity: rows(count),
             reaction: rows(count),
-            push: rows(padded),
-            mean: rows(padded),
-            loose: Vec::new(),
-            collected: Shared::new(vec![0.0; count]),
-            pressure: Shared::new(vec![0.0; count]),
-            on_walls: Shared::new(vec![[0.0; 2]; lattice.cells[0]]),
+            push: sheets(),
+            mean: sheets(),
+            numbers: numbers(planes * scratch),
+            lines: rows(planes * lines),
+            kept: Vec::new(),
+            ends: Vec::new(),
+            collected: numbers(count),
+            pressure: numbers(count),
+            on_walls: Shared::new(vec![[0.0; 2]; planes]),
+            lost: Shared::new(Vec::new()),
+            given: Shared::new(vec![[0.0; 2]; planes]),
         }
-    }
-
-    /// Make room for the sums of the parts.
-    pub fn fit<const N: usize>(&mut self, exchange: &Exchange<N>, lattice: &Lattice) {
-        let nodes = |planes: &Range<usize>| planes.len() * lattice.padded_plane();
-        let parts = exchange.parts.iter();
-        self.loose = parts
-            .map(|part| Shared::new(vec![Row::ZERO; nodes(&part.planes)]))
-            .collect();
     }
 }
 
 /// All that the threads share in one step.
 pub(crate) struct Pass<'a, const N: usize> {
     pub lattice: &'a Lattice,
-    pub exchange: &'a Exchange<N>,
+    pub kernels: &'a Kernels<N>,
+    pub exchange: &'a Exchange,
     pub frozen: &'a Frozen,
     pub fields: &'a Fields,
     /// Indices of the bottom and the top wall.
@@ -101,80 +127,114 @@ pub(crate) struct Pass<'a, const N: usize> {
 impl<const N: usize> Pass<'_, N> {
     /// Mean velocities of all faces.
     pub fn follow(&self, moved: &Moved, threads: &Threads) {
-        let (lattice, exchange) = (self.lattice, self.exchange);
-        for k in threads.share(exchange.parts.len()) {
-            // SAFETY: each part is one thread's until they meet.
-            unsafe {
-                exchange.scatter(lattice, k, |grain, touch| {
-                    moved.velocity[grain].0.map(|v| touch.volume * v)
-                });
-                if drags(moved.step) {
-                    exchange.scatter_into(lattice, k, &self.fields.loose[k], |grain, _| {
-                        moved.velocity[grain]
-                            .0
-                            .map(|v| exchange.loose[grain].drag * v)
-                    });
-                }
+        let (exchange, fields) = (self.exchange, self.fields);
+        assert!(
+            moved.velocity.len() >= exchange.count,
+            "grains came without notice"
+        );
+        let groups = exchange.share(threads);
+        let scatter = self.kernels.scatter;
+        // SAFETY: each group is one thread's until they meet; there are velocities of all grains.
+        unsafe {
+            let moments = fields.moments.write(groups.clone());
+            scatter(
+                exchange,
+                groups.clone(),
+                &exchange.counts,
+                moved.velocity,
+                moments,
+            );
+            if drags(moved.step) {
+                let moments = fields.loose.write(groups.clone());
+                scatter(exchange, groups, &exchange.drag, moved.velocity, moments);
             }
         }
         threads.meet();
         let walls = self.wall_velocities(moved.walls);
-        for plane in threads.share(lattice.cells[0]) {
+        for plane in threads.share(self.lattice.cells[0]) {
             self.mean_velocities(plane, walls);
             if drags(moved.step) {
                 self.reactions(plane);
             }
+            self.book_given(plane, moved.step);
         }
         threads.meet();
     }
 
     /// Velocities of the bottom and the top wall along z.
-    fn wall_velocities(&self, walls: &[WallState]) -> [f64; 2] {
+    pub fn wall_velocities(&self, walls: &[WallState]) -> [f64; 2] {
         let [bottom, top] = self.walls.map(|k| walls[k].velocity);
         [bottom, -top]
     }
 
-    /// Add up what parts have scattered to the nodes of a plane, in one order.
-    fn add_up<'s>(&'s self, plane: usize, of: impl Fn(usize) -> &'s [Row], to: &mut [Row]) {
-        let lattice = self.lattice;
-        let nz = lattice.cells[2];
-        to.fill(Row::ZERO);
-        for &(part, alias) in &self.exchange.reached[plane] {
-            let first = self.exchange.parts[part].planes.start;
-            let start = (alias - first) * lattice.padded_plane();
-            let from = &of(part)[start..start + lattice.padded_plane()];
-            let pad = lattice.pad_z;
-            for (padded, column) in from.chunks_exact(lattice.padded_column()).enumerate() {
-                let j = lattice.unpadded(1, padded);
-                let to = &mut to[j * nz..(j + 1) * nz];
-                for (sum, row) in to.iter_mut().zip(&column[pad..]) {
-                    for lane in 0..4 {
-                        sum.0[lane] += row.0[lane];
-                    }
-                }
-                // What fell behind the walls, of the opposite flux.
-                for k in (0..pad).chain(pad + nz..pad + nz + pad) {
-                    let place = k as i64 - pad as i64;
-                    let sum = &mut to[folded_cell(place, nz)].0;
-                    sum[0] += column[k].0[0];
-                    sum[1] += column[k].0[1];
-                    let (face, behind) = folded_face(place, nz);
-                    if behind.is_some() && face < nz {
-                        to[face].0[2] -= column[k].0[2];
-                    }
-                }
+    pub fn plane(&self, plane: usize) -> Plane<N> {
+        Plane {
+            lattice: *self.lattice,
+            plane,
+        }
+    }
+
+    /// What the work on a plane needs.
+    ///
+    /// # Safety
+    /// Nobody else works on the plane.
+    pub unsafe fn scratch(&self, plane: usize) -> Scratch<'_> {
+        let [numbers, lines] = self.plane(plane).needs();
+        // SAFETY: the caller's promise.
+        unsafe {
+            Scratch {
+                numbers: self
+                    .fields
+                    .numbers
+                    .write(plane * numbers..(plane + 1) * numbers),
+                lines: self.fields.lines.write(plane * lines..(plane + 1) * lines),
             }
+        }
+    }
+
+    /// The nodes of a plane take `moments`.
+    ///
+    /// # Safety
+    /// Nobody else works on the plane.
+    unsafe fn take(&self, plane: usize, moments: &[Moments], nodes: &mut [Row]) {
+        // SAFETY: the caller's promise; the kernel is one for this processor.
+        unsafe {
+            (self.kernels.take)(&self.plane(plane), moments, self.scratch(plane), nodes);
+        }
+    }
+
+    /// The lines along z of a plane, to be filled with what its nodes give: nodes between the walls
+    /// stand behind those that are behind the bottom; `Plane::mirror` fills the ends.
+    ///
+    /// # Safety
+    /// Nobody else works on the plane.
+    pub unsafe fn lines(&self, plane: usize) -> impl Iterator<Item = &mut [Row]> {
+        // SAFETY: the caller's promise.
+        let Scratch { lines, .. } = unsafe { self.scratch(plane) };
+        lines.chunks_exact_mut(self.plane(plane).line())
+    }
+
+    /// The nodes of a plane give what its lines have been filled with.
+    ///
+    /// # Safety
+    /// As above.
+    pub unsafe fn give(&self, plane: usize, sheets: &Shared<Sheets>) {
+        let groups = self.lattice.groups();
+        // SAFETY: as above.
+        unsafe {
+            let sheets = sheets.write(plane * groups..(plane + 1) * groups);
+            (self.kernels.give)(&self.plane(plane), self.scratch(plane), sheets);
         }
     }
 
     fn mean_velocities(&self, plane: usize, walls: [f64; 2]) {
         let range = self.lattice.cells_of(plane);
-        // SAFETY: each plane is one thread's; parts are read between two meetings.
-        let velocity = unsafe { self.fields.velocity.write(range.clone()) };
-        let parts = &self.exchange.parts;
-        // SAFETY: as above.
-        let sums = |part: usize| unsafe { parts[part].sums.read() };
-        self.add_up(plane, sums, velocity);
+        // SAFETY: each plane is one thread's; moments are read between two meetings.
+        let velocity = unsafe {
+            let velocity = self.fields.velocity.write(range.clone());
+            self.take(plane, self.fields.moments.read(), velocity);
+            velocity
+        };
         for (velocity, inverse) in velocity.iter_mut().zip(&self.frozen.inverse[range.clone()]) {
             for lane in 0..4 {
                 velocity.0[lane] *= inverse.0[lane];
@@ -190,16 +250,31 @@ impl<const N: usize> Pass<'_, N> {
         }
     }
 
+    /// Power of the reactions, at the drag and after the drift that follows it.
+    fn book_given(&self, plane: usize, step: u64) {
+        let range = self.lattice.cells_of(plane);
+        // SAFETY: each plane is one thread's.
+        let (given, velocity, reaction) = unsafe {
+            (
+                &mut self.fields.given.write(plane..plane + 1)[0],
+                &self.fields.velocity.read()[range.clone()],
+                &self.fields.reaction.read()[range],
+            )
+        };
+        book_given(given, step, || {
+            let each = reaction.iter().zip(velocity);
+            each.map(|(r, v)| r.xyz().dot(v.xyz())).sum()
+        });
+    }
+
     fn reactions(&self, plane: usize) {
         let range = self.lattice.cells_of(plane);
-        // SAFETY: each plane is one thread's; parts are read between two meetings.
+        // SAFETY: each plane is one thread's; moments are read between two meetings.
         let (reaction, velocity) = unsafe {
-            let velocity = &self.fields.velocity.read()[range.clone()];
-            (self.fields.reaction.write(range.clone()), velocity)
+            let reaction = self.fields.reaction.write(range.clone());
+            self.take(plane, self.fields.loose.read(), reaction);
+            (reaction, &self.fields.velocity.read()[range.clone()])
         };
-        // SAFETY: as above.
-        let sums = |part: usize| unsafe { self.fields.loose[part].read() };
-        self.add_up(plane, sums, reaction);
         let frozen = &self.frozen;
         let weights = frozen.ease[range.clone()].iter().zip(&frozen.loose[range]);
         for ((reaction, velocity), (ease, loose)) in reaction.iter_mut().zip(velocity).zip(weights)
@@ -212,222 +287,79 @@ impl<const N: usize> Pass<'_, N> {
     }
 
     /// Σ `of` K over the grains at each face, on the caller's thread.
-    pub fn sums_of<const M: usize>(&self, of: [&dyn Fn(usize) -> f64; M]) -> [Vec<Row>; M] {
-        of.map(|of| {
-            for k in 0..self.exchange.parts.len() {
-                // SAFETY: there is one thread.
-                unsafe {
-                    let value = |grain: usize, _: &Touch<N>| [of(grain); 4];
-                    self.exchange.scatter(self.lattice, k, value);
-                }
-            }
-            let mut sums = vec![Row::ZERO; self.lattice.count()];
-            for plane in 0..self.lattice.cells[0] {
-                let parts = &self.exchange.parts;
-                // SAFETY: as above.
-                let of_part = |part: usize| unsafe { parts[part].sums.read() };
-                self.add_up(plane, of_part, &mut sums[self.lattice.cells_of(plane)]);
-            }
-            sums
-        })
+    pub fn sums_of<const M: usize>(&self, of: [&[Row]; M]) -> [Vec<Row>; M] {
+        of.map(|of| self.sums(self.kernels.sum, of, &[]))
     }
 
-    /// What each grain gathers of `field`, one row a node, on the caller's thread.
-    pub fn gathered(&self, field: &[Row]) -> Vec<[f64; 4]> {
-        let lattice = self.lattice;
-        let mut nodes = vec![Row::ZERO; lattice.padded()[0] * lattice.padded_plane()];
-        let columns = nodes.chunks_exact_mut(lattice.padded_column());
-        for (column, nodes) in columns.enumerate() {
-            let [planes, along] = [column / lattice.padded()[1], column % lattice.padded()[1]];
-            let (i, j) = (lattice.unpadded(0, planes), lattice.unpadded(1, along));
-            let first = lattice.cell([i, j, 0]);
-            let field = &field[first..first + lattice.cells[2]];
-            nodes[lattice.pad_z..][..field.len()].copy_from_slice(field);
-            self.mirror(nodes);
+    /// Σ `of` K times the grains' components of `vector` along the normal, one row a grain.
+    pub fn flow_of(&self, of: &[Row], vector: &[Row]) -> Vec<Row> {
+        assert!(
+            vector.len() >= self.exchange.count,
+            "one row for each grain"
+        );
+        self.sums(self.kernels.scatter, of, vector)
+    }
+
+    fn sums(&self, scatter: Scatter, of: &[Row], vector: &[Row]) -> Vec<Row> {
+        let all = 0..self.exchange.groups.len();
+        let mut sums = vec![Row::ZERO; self.lattice.count()];
+        // SAFETY: there is one thread, and a vector for each grain where it is asked for.
+        unsafe {
+            let moments = self.fields.moments.write(all.clone());
+            scatter(self.exchange, all, of, vector, moments);
+            for plane in 0..self.lattice.cells[0] {
+                self.take(plane, moments, &mut sums[self.lattice.cells_of(plane)]);
+            }
         }
-        let mut sums = Vec::with_capacity(self.exchange.touches.len());
-        let layout = Layout::of(lattice, &self.exchange.table);
-        gather_all(&self.exchange.touches, layout, &nodes, |_, _, sum| {
-            sums.push(sum);
-        });
         sums
     }
 
-    /// Fill the padding of a column behind the walls: what images of grains are pushed with.
-    fn mirror(&self, column: &mut [Row]) {
-        let (nz, pad) = (self.lattice.cells[2], self.lattice.pad_z);
-        column[pad].0[2] = 0.0;
-        for k in (0..pad).chain(pad + nz..pad + nz + pad) {
-            let place = k as i64 - pad as i64;
-            let cell = column[pad + folded_cell(place, nz)].0;
-            let (face, behind) = folded_face(place, nz);
-            let across = match behind.is_some() && face < nz {
-                true => -column[pad + face].0[2],
-                false => 0.0,
-            };
-            column[k] = Row([cell[0], cell[1], across, 0.0]);
+    /// What each grain finds of `field`, one row a node, on the caller's thread.
+    pub fn found(&self, field: &[Row], to: &mut [[Row; 3]]) {
+        // SAFETY: there is one thread.
+        unsafe {
+            for plane in 0..self.lattice.cells[0] {
+                let nz = self.lattice.cells[2];
+                let nodes = field[self.lattice.cells_of(plane)].chunks_exact(nz);
+                for (line, nodes) in self.lines(plane).zip(nodes) {
+                    line[half_width(N)..][..nz].copy_from_slice(nodes);
+                    self.plane(plane).mirror(line);
+                }
+                self.give(plane, &self.fields.mean);
+            }
+            (self.kernels.read)(self.given(&self.fields.mean), to);
         }
     }
 
-    /// Collect the volume that faces bring to the cells in `step` [s], and hand it on.
-    pub fn collect(
-        &self,
-        moved: &Moved,
-        threads: &Threads,
-        step: f64,
-        pressure: impl Fn(usize, f64) -> f64,
-    ) {
-        let lattice = self.lattice;
-        let [_, ny, nz] = lattice.cells;
-        let top = self.wall_velocities(moved.walls)[1];
-        let side = lattice.spacing * lattice.height;
-        let floor = lattice.spacing * lattice.spacing;
-        // SAFETY: velocities are written before the last meeting.
-        let velocity = unsafe { self.fields.velocity.read() };
-        for i in threads.share(lattice.cells[0]) {
-            let range = lattice.cells_of(i);
-            // SAFETY: each plane is one thread's.
-            let (collected, feel) = unsafe {
-                let feel = self.fields.pressure.write(range.clone());
-                (self.fields.collected.write(range.clone()), feel)
-            };
-            for j in 0..ny {
-                let here = lattice.cell([i, j, 0]);
-                let behind = lattice.cell([lattice.next(0, i), j, 0]);
-                let beside = lattice.cell([i, lattice.next(1, j), 0]);
-                for k in 0..nz {
-                    let v = &velocity[here + k].0;
-                    let above = if k + 1 < nz {
-                        velocity[here + k + 1].0[2]
-                    } else {
-                        top
-                    };
-                    let along =
-                        (velocity[behind + k].0[0] - v[0]) + (velocity[beside + k].0[1] - v[1]);
-                    let flux = side * along + floor * (above - v[2]);
-                    let own = j * nz + k;
-                    collected[own] += step * flux;
-                    feel[own] = pressure(here + k, collected[own]);
-                }
-            }
+    /// What grains gather from.
+    ///
+    /// # Safety
+    /// The sheets are written before the last meeting.
+    unsafe fn given<'s>(&'s self, sheets: &'s Shared<Sheets>) -> Given<'s> {
+        Given {
+            lattice: self.lattice,
+            exchange: self.exchange,
+            // SAFETY: the caller's promise.
+            sheets: unsafe { sheets.read() },
         }
     }
 
-    /// What faces push their grains with, and walls.
-    pub fn push(&self, moved: &Moved, threads: &Threads) {
-        threads.meet();
-        // SAFETY: pressure and velocities are written before this meeting.
-        let pressure = unsafe { self.fields.pressure.read() };
-        for padded in threads.share(self.lattice.padded()[0]) {
-            self.push_plane(padded, pressure, drags(moved.step));
-        }
-        threads.meet();
-    }
-
-    fn push_plane(&self, padded: usize, pressure: &[f64], drags: bool) {
-        let lattice = self.lattice;
-        let [nx, ny, nz] = lattice.cells;
-        let i = lattice.unpadded(0, padded);
-        let own = padded >= lattice.pad && padded < lattice.pad + nx;
-        let side = lattice.spacing * lattice.height;
-        let floor = lattice.spacing * lattice.spacing;
-        let nodes = padded * lattice.padded_plane()..(padded + 1) * lattice.padded_plane();
-        // SAFETY: each padded plane is one thread's; velocities and reactions are written before
-        // the last meeting.
-        let (push, mean, velocity, reaction) = unsafe {
-            (
-                self.fields.push.write(nodes.clone()),
-                self.fields.mean.write(nodes),
-                self.fields.velocity.read(),
-                self.fields.reaction.read(),
-            )
-        };
-        let mut on_walls = [0.0; 2];
-        let before = lattice.last(0, i);
-        for column in 0..lattice.padded()[1] {
-            let j = lattice.unpadded(1, column);
-            let first = column >= lattice.pad && column < lattice.pad + ny;
-            let here = lattice.cell([i, j, 0]);
-            let left = lattice.cell([before, j, 0]);
-            let front = lattice.cell([i, lattice.last(1, j), 0]);
-            let first_node = column * lattice.padded_column() + lattice.pad_z;
-            for k in 0..nz {
-                let (cell, node) = (here + k, first_node + k);
-                let p = pressure[cell];
-                let below = if k > 0 { pressure[cell - 1] } else { p };
-                let mut force = [
-                    side * (pressure[left + k] - p),
-                    side * (pressure[front + k] - p),
-                    floor * (below - p),
-                ];
-                if drags {
-                    for lane in 0..3 {
-                        force[lane] += reaction[cell].0[lane];
-                        let ease = self.frozen.ease[cell].0[lane];
-                        mean[node].0[lane] = ease * velocity[cell].0[lane];
-                    }
-                }
-                for lane in 0..3 {
-                    push[node].0[lane] = force[lane] * self.frozen.inverse[cell].0[lane];
-                }
-                if own && first && !self.frozen.walls.is_empty() {
-                    let [bottom, top] = self.frozen.walls[cell];
-                    on_walls[0] -= bottom * force[2];
-                    on_walls[1] += top * force[2];
-                }
-            }
-            let nodes = column * lattice.padded_column()..(column + 1) * lattice.padded_column();
-            self.mirror(&mut push[nodes.clone()]);
-            if drags {
-                self.mirror(&mut mean[nodes]);
-            }
-            if own && first {
-                on_walls[0] += floor * pressure[here];
-                on_walls[1] += floor * pressure[here + nz - 1];
+    /// Add the water's push and lift to the forces of the grains `own`.
+    pub fn gather(&self, moved: &Moved, own: Range<usize>, force: &mut [Row]) {
+        assert!(
+            moved.velocity.len() >= self.exchange.count,
+            "grains came without notice"
+        );
+        // SAFETY: written before the last meeting; there are velocities of all grains.
+        unsafe {
+            let push = self.given(&self.fields.push);
+            (self.kernels.push)(push, own.clone(), force);
+            if drags(moved.step) {
+                let mean = self.given(&self.fields.mean);
+                // Each grain is one thread's.
+                let lost = self.fields.lost.write(own.clone());
+                (self.kernels.drag)(mean, moved.velocity, own, force, lost);
             }
         }
-        if own {
-            // SAFETY: each plane is one thread's.
-            unsafe { self.fields.on_walls.write(i..i + 1)[0] = on_walls };
-        }
-    }
-
-    /// Add the water's push to the forces of the grains `own`, and `lift` of each [N].
-    pub fn gather(
-        &self,
-        moved: &Moved,
-        own: Range<usize>,
-        force: &mut [Row],
-        lift: impl Fn(usize) -> f64,
-    ) {
-        let layout = Layout::of(self.lattice, &self.exchange.table);
-        let touches = &self.exchange.touches[own.clone()];
-        // SAFETY: written before the last meeting.
-        let (push, mean) = unsafe { (self.fields.push.read(), self.fields.mean.read()) };
-        gather_all(touches, layout, push, |k, touch, sum| {
-            let force = &mut force[k].0;
-            for lane in 0..4 {
-                force[lane] += touch.volume * sum[lane];
-            }
-            force[2] += lift(own.start + k);
-        });
-        if drags(moved.step) {
-            let loose = &self.exchange.loose[own.clone()];
-            gather_all(touches, layout, mean, |k, _, sum| {
-                let velocity = moved.velocity[own.start + k].0;
-                let force = &mut force[k].0;
-                for lane in 0..4 {
-                    let slip = sum[lane] - loose[k].grip[lane] * velocity[lane];
-                    force[lane] += loose[k].drag * slip;
-                }
-            });
-        }
-    }
-
-    /// Force on the bottom (0) or the top wall (1), away from the grains [N].
-    pub fn on_wall(&self, side: usize) -> f64 {
-        // SAFETY: written before the last meeting.
-        let planes = unsafe { self.fields.on_walls.read() };
-        planes.iter().map(|plane| plane[side]).sum()
     }
 }

@@ -17,6 +17,8 @@
 //! In three dimensions weights are products: a face of normal x has K along x and c along y, z.
 //! Where the lattice is stretched, the kernel is stretched with it.
 
+use dem::Row;
+
 /// Half width in cells of a kernel that reaches `N` of them.
 pub(crate) const fn half_width(n: usize) -> usize {
     (n - 1) / 2
@@ -24,7 +26,7 @@ pub(crate) const fn half_width(n: usize) -> usize {
 
 /// Coefficients of 1, t, t² of the share of cell `k` of `n`, and of the weight of its lower face;
 /// t is how far into the middle cell the grain is, from 0 to 1.
-fn coefficients(n: usize, k: usize) -> [[f64; 3]; 2] {
+const fn coefficients(n: usize, k: usize) -> [[f64; 3]; 2] {
     match (n, k) {
         (3, 0) => [[0.5, -1.0, 0.5], [0.0, 0.0, 0.0]],
         (3, 1) => [[0.5, 1.0, -1.0], [1.0, -1.0, 0.0]],
@@ -38,25 +40,53 @@ fn coefficients(n: usize, k: usize) -> [[f64; 3]; 2] {
     }
 }
 
-/// Coefficients of the weights along each axis at nodes: lane a is for the faces of normal a, the
-/// fourth is zero.
-pub(crate) type Table<const N: usize> = [[[[f64; 4]; 3]; N]; 3];
+/// The same weights as sums of s, t, and of 1, s², t², where s = 1 - t: of terms that are never
+/// negative, such that sums of weights lose no digits however small they are. What is subtracted is
+/// never more than half of what it is subtracted from.
+pub(crate) struct Kernel<const N: usize>;
 
-/// The table for a kernel that reaches `N` cells.
-pub(crate) fn table<const N: usize>() -> Table<N> {
-    let mut table = [[[[0.0; 4]; 3]; N]; 3];
-    for axis in 0..3 {
-        for k in 0..N {
-            let [cell, face] = coefficients(N, k);
-            for lane in 0..3 {
-                let chosen = if lane == axis { face } else { cell };
-                for power in 0..3 {
-                    table[axis][k][power][lane] = chosen[power];
-                }
-            }
+impl<const N: usize> Kernel<N> {
+    /// Coefficients of 1, s², t² in the share of each cell.
+    pub const CELLS: [[f64; N]; 3] = {
+        let mut of = [[0.0; N]; 3];
+        let mut k = 0;
+        while k < N {
+            let [a, b, c] = coefficients(N, k)[0];
+            // t = (1 - s² + t²)/2
+            (of[0][k], of[1][k], of[2][k]) = (a + 0.5 * b, -0.5 * b, 0.5 * b + c);
+            k += 1;
         }
-    }
-    table
+        of
+    };
+
+    /// Coefficients of s, t in the weight of each lower face.
+    pub const FACES: [[f64; N]; 2] = {
+        let mut of = [[0.0; N]; 2];
+        let mut k = 0;
+        while k < N {
+            let [a, b, _] = coefficients(N, k)[1];
+            (of[0][k], of[1][k]) = (a, a + b);
+            k += 1;
+        }
+        of
+    };
+
+    /// The same along z, side by side for the faces of normal x, y and z.
+    pub const ALONG_Z: [[Row; N]; 3] = {
+        let mut of = [[Row::ZERO; N]; 3];
+        let mut term = 0;
+        while term < 3 {
+            let mut k = 0;
+            while k < N {
+                let cell = Self::CELLS[term][k];
+                let face = if term < 2 { Self::FACES[term][k] } else { 0.0 };
+                of[term][k] = Row([cell, cell, face, 0.0]);
+                k += 1;
+            }
+            term += 1;
+        }
+        of
+    };
 }
 
 /// Shares of the `N` cells that a grain reaches along an axis, and weights of their lower faces;
@@ -124,10 +154,17 @@ mod tests {
             let (cells, faces) = shares::<N>(t);
             assert!((cells.iter().sum::<f64>() - 1.0).abs() < 1e-15);
             assert!((faces.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            let s = 1.0 - t;
             for k in 0..N {
                 let face = hat(k as f64 - m - t, m);
                 assert!((faces[k] - face).abs() < 1e-15, "face {k} at {t}");
                 assert!(cells[k] >= 0.0);
+                let [a, b, c] = Kernel::<N>::CELLS.map(|of| of[k]);
+                let cell = a + b * s * s + c * t * t;
+                assert!((cells[k] - cell).abs() < 1e-15, "cell {k} at {t}");
+                let [a, b] = Kernel::<N>::FACES.map(|of| of[k]);
+                assert!((faces[k] - a * s - b * t).abs() < 1e-15, "face {k} at {t}");
+                assert!(a >= 0.0 && b >= 0.0);
             }
         }
         // dc_k/dξ = K_k - K_(k+1): what is in a cell changes by what passes its faces, at

@@ -2,10 +2,10 @@
 //!
 //! Cells here run z fastest and x slowest, as the grains of `dem` do: so a stretch of grains meets
 //! few planes, and threads share planes of x. `lbm` has x fastest. A node is the lower corner
-//! of a cell, and stands for its three lower faces. Arrays to which grains reach are padded by the
-//! reach of the kernel, and along x and y by one cell more, for grains that have left the box since
-//! the last search.
+//! of a cell, and stands for its three lower faces. Four cells that follow each other in a plane are a
+//! group: the hot loops take them at once, a lane each.
 
+use crate::kernel::half_width;
 use std::ops::Range;
 
 /// The lattice of a bed.
@@ -15,9 +15,6 @@ pub(crate) struct Lattice {
     pub cells: [usize; 3],
     /// Length of a cell along x and y [m].
     pub spacing: f64,
-    /// Planes and columns of padding at each end, and nodes of it along z.
-    pub pad: usize,
-    pub pad_z: usize,
     /// Height of the bottom [m].
     pub bottom: f64,
     /// Height of a cell [m].
@@ -52,43 +49,29 @@ impl Lattice {
         self.spacing * self.spacing * self.height
     }
 
-    /// Padded planes, and padded columns of a plane.
-    pub fn padded(&self) -> [usize; 2] {
-        [0, 1].map(|axis| self.cells[axis] + 2 * self.pad)
+    /// Area of the bed [m²].
+    pub fn area(&self) -> f64 {
+        self.spacing * self.spacing * (self.cells[0] * self.cells[1]) as f64
     }
 
-    /// Nodes of a padded column, and of a padded plane.
-    pub fn padded_column(&self) -> usize {
-        self.cells[2] + 2 * self.pad_z
-    }
-    pub fn padded_plane(&self) -> usize {
-        self.padded()[1] * self.padded_column()
+    /// The cell that stands for place `at` of axis 0 or 1, which may lie outside the box.
+    pub fn wrapped(&self, axis: usize, at: i64) -> usize {
+        at.rem_euclid(self.cells[axis] as i64) as usize
     }
 
-    /// The padded place of a cell along axis 0 or 1 that may lie outside the box.
-    pub fn padded_place(&self, axis: usize, at: i64) -> usize {
-        let count = self.cells[axis] as i64;
-        let pad = self.pad as i64;
-        let place = at + pad;
-        // Far outside: a grain that nothing has wrapped; its image inside does as well.
-        let fits = place >= 0 && place < count + pad;
-        (if fits {
-            place
-        } else {
-            at.rem_euclid(count) + pad
-        }) as usize
+    /// The `k`-th of the planes that a kernel reaches from `plane`.
+    pub fn plane_near<const N: usize>(&self, plane: usize, k: usize) -> usize {
+        (plane + self.cells[0] * N + k - half_width(N)) % self.cells[0]
     }
 
-    /// The cell along `axis` that a padded place stands for.
-    pub fn unpadded(&self, axis: usize, padded: usize) -> usize {
-        let count = self.cells[axis];
-        (padded + count * self.pad - self.pad) % count
+    /// Groups of four cells in a plane; the last may be less than full.
+    pub fn groups(&self) -> usize {
+        self.plane().div_ceil(4)
     }
 
-    /// The padded places of cell `at` along `axis`.
-    pub fn aliases(&self, axis: usize, at: usize) -> impl Iterator<Item = usize> + use<> {
-        let lattice = *self;
-        (0..self.padded()[axis]).filter(move |&place| lattice.unpadded(axis, place) == at)
+    /// The group of a cell of a plane, and its lane there.
+    pub fn lane(&self, plane: usize, cell: usize) -> (usize, usize) {
+        (plane * self.groups() + cell / 4, cell % 4)
     }
 
     /// Next and last cell along a periodic axis.

@@ -13,10 +13,15 @@
 //! and on the grains, per volume of bed, -(1 - φ) ∇p of pressure and φ R q of drag: with q
 //! without inertia -∇p together, which is -V ∇p/(1 - φ) on a grain.
 //!
+//! That is where drag holds the water, as in tills. Where pores are open, in gravel, suspensions and
+//! clear water, its own mass does: then its momentum is solved (`open/mod.rs`), and drag and pressure
+//! reach the grains as they are.
+//!
 //! # The path of one step
 //! 1. `dem` kicks and moves grains and walls: v(t + dt/2), x(t + dt).
 //! 2. `exchange.rs`: velocities are scattered to the faces of the cells, each the mean
-//!    over the grains near it, by weights that are frozen for a while (`kernel.rs`).
+//!    over the grains near it, by weights that are frozen for a while (`kernel.rs`): grains to
+//!    moments of their cells (`scatter.rs`), these to faces (`nodes.rs`).
 //! 3. The pressure that follows at once, undrained, p = (N - ∫∮v dA dt) / (β V_p): without it
 //!    stiff water blows up, and it must cover the whole force.
 //! 4. Every n steps the lattice takes what has been collected as a source and drains it.
@@ -27,8 +32,15 @@
 //!    pressure on the volume, and sums of forces balance. Walls get the pressure of their cells.
 //! 6. `dem` adds contacts.
 //!
+//! On processors nothing is copied or allocated on this path, fluid steps included: water reads the
+//! velocities where `dem` keeps them, and adds to the very sums that move the grains
+//! (`tests/allocation.rs` counts). Renewals of the weights, and neighbour searches, allocate.
+//!
 //! Sources: Goren et al. (2010), J. Geophys. Res. 115, B09216, for the equation; Kim, Tchelepi
 //! and Juanes (2011), Comput. Methods Appl. Mech. Eng. 200, 1591, for undrained splits.
+//!
+//! # On a device
+//! [`gpu`] does the same on graphics devices, in the arrays where grains and lattice live there.
 //!
 //! # Grains that carry no load
 //! A mean velocity that counts loose grains lets the skeleton compress while they fly the other
@@ -40,25 +52,39 @@
     reason = "lanes, nodes and cells are indices of several arrays at once"
 )]
 
+mod cells;
 mod check;
 mod choice;
 mod coupled;
 mod drag;
+mod drift;
 mod exchange;
+#[cfg(test)]
+mod exchange_tests;
 mod faces;
+mod gather;
+pub mod gpu;
 mod kernel;
+mod kernels;
 mod lattice;
+mod ledger;
 mod load;
 mod model;
+mod nodes;
+mod open;
 mod report;
+mod scatter;
+mod softness;
 mod stiffness;
+mod terms;
 #[cfg(test)]
 mod tests;
 mod water;
 
 pub use coupled::{Coupled, Error};
 pub use drag::{Permeability, Resistance};
+pub use ledger::Ledger;
 pub use model::{Cavitation, Model, NormalStress};
-pub use report::{Ledger, Report};
+pub use report::Report;
 pub use stiffness::skeleton_stiffness;
 pub use water::{Snapshot, State, Water};

@@ -48,7 +48,7 @@ impl Model {
             sides: [Side::FreeSlip, Side::FreeSlip],
             normal_stress: NormalStress::Total,
             cavitation: None,
-            loose: 0.5,
+            loose: 1.0,
             load_memory: 1e-3,
             interval: None,
             renewal: 64,

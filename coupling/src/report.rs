@@ -1,7 +1,9 @@
 //! What the numbers of a coupled run imply, and what was seen while it went on.
 
-use crate::Water;
-use crate::choice::{REFUSED, WARNED};
+use crate::choice::{REFUSED, Steps, WARNED};
+use crate::lattice::Lattice;
+use crate::softness::Softness;
+use crate::{Model, Water};
 use std::fmt;
 
 /// What happened that a user must know.
@@ -57,33 +59,69 @@ pub struct Report {
     pub height: f64,
     /// Share of grains that carry less than a hundredth of the mean load.
     pub rattlers: f64,
+    /// How far the solid in the cells has drifted from what flowed into them with the mean velocity
+    /// of the faces since the water joined: root of the mean square, as a solid fraction; none where
+    /// the grains keep no ledger.
+    pub drift: Option<f64>,
     /// Times that the lattice was laid anew for a bed that had changed.
     pub relaid: u64,
     /// Time in which there was vapour [s].
     pub vapour_time: f64,
     /// The greatest volume of vapour [m³].
     pub vapour_most: f64,
-    /// The lattice.
-    pub lattice: lbm::Scaling,
+    /// What is wrong with water that is softer than water.
+    softness: Option<Softness>,
+    /// The lattice; none where pores are open and the water's momentum is solved instead.
+    pub lattice: Option<lbm::Scaling>,
+}
+
+/// What a report is made from, whoever computes.
+pub(crate) struct Numbers<'a> {
+    pub model: &'a Model,
+    pub lattice: &'a Lattice,
+    /// Mean of the bed.
+    pub porosity: f64,
+    pub steps: Steps,
+    pub rattlers: f64,
+    pub drift: Option<f64>,
+    pub events: &'a Events,
+    pub scaling: Option<&'a lbm::Scaling>,
 }
 
 impl Report {
     pub(crate) fn of<const N: usize>(water: &Water<N>) -> Self {
-        let count = water.lattice.count() as f64;
-        let solid: f64 = water.solid.iter().sum();
-        let porosity = 1.0 - solid / (count * water.lattice.volume());
-        let fluid = water.model.fluid;
-        let permeability = fluid.viscosity / water.model.resistance.at(&fluid, porosity, 0.0);
+        Self::of_numbers(Numbers {
+            model: &water.model,
+            lattice: &water.lattice,
+            porosity: water.porosity(),
+            steps: water.steps,
+            rattlers: water.loads.rattlers(),
+            drift: water.drift.rms(),
+            events: &water.events,
+            scaling: water.flow.lattice().map(|solver| solver.scaling()),
+        })
+    }
+
+    pub(crate) fn of_numbers(numbers: Numbers) -> Self {
+        let Numbers {
+            model,
+            lattice,
+            porosity,
+            ..
+        } = numbers;
+        let fluid = model.fluid;
+        let permeability = fluid.viscosity / model.resistance.at(&fluid, porosity, 0.0);
         let storage = porosity * fluid.compressibility;
-        let stiffness = water.model.stiffness;
+        let stiffness = model.stiffness;
         let compliance = storage + stiffness.map_or(0.0, |m| 1.0 / m);
-        let height = water.lattice.height * water.lattice.cells[2] as f64;
-        let events = &water.events;
+        let height = lattice.height * lattice.cells[2] as f64;
+        let events = numbers.events;
+        let lattice = numbers.scaling.copied();
         Self {
-            interval: water.steps.interval,
-            sub_steps: water.steps.sub_steps,
+            interval: numbers.steps.interval,
+            sub_steps: numbers.steps.sub_steps,
             diffusivity: events.diffusivity,
-            drag: water.fluid.scaling().drag[1],
+            drag: lattice.map_or(0.0, |lattice| lattice.drag[1]),
             courant: events.courant,
             porosity,
             permeability,
@@ -92,11 +130,13 @@ impl Report {
             skempton: stiffness.map(|m| 1.0 / (1.0 + storage * m)),
             drainage_time: height * height * fluid.viscosity * compliance / permeability,
             height,
-            rattlers: water.loads.rattlers(),
+            rattlers: numbers.rattlers,
+            drift: numbers.drift,
             relaid: events.relaid,
             vapour_time: events.vapour_time,
             vapour_most: events.vapour_most,
-            lattice: *water.fluid.scaling(),
+            softness: Softness::of(model, porosity),
+            lattice,
         }
     }
 
@@ -117,6 +157,7 @@ impl Report {
                 self.diffusivity, self.interval
             ));
         }
+        warnings.extend(self.softness.and_then(|softness| softness.warning()));
         if self.vapour_time > 0.0 {
             warnings.push(format!(
                 "the water broke for {:.3e} s; at most {:.3e} m³ of vapour opened",
@@ -130,11 +171,18 @@ impl Report {
 impl fmt::Display for Report {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let known = |x: Option<f64>| x.map_or("unknown".to_owned(), |x| format!("{x:.3e}"));
-        writeln!(
-            out,
-            "coupling: fluid every {} grain steps in {} of its own, D_n {:.3}, sigma {:.2}, C {:.2}",
-            self.interval, self.sub_steps, self.diffusivity, self.drag, self.courant
-        )?;
+        if self.lattice.is_some() {
+            writeln!(
+                out,
+                "coupling: fluid every {} grain steps in {} of its own, D_n {:.3}, sigma {:.2}, C {:.2}",
+                self.interval, self.sub_steps, self.diffusivity, self.drag, self.courant
+            )?;
+        } else {
+            writeln!(
+                out,
+                "coupling: open pores, the water's momentum every grain step"
+            )?;
+        }
         writeln!(
             out,
             "  bed: porosity {:.3}, permeability {:.2e} m², drained in {:.3e} s, {:.1} % rattlers",
@@ -152,34 +200,12 @@ impl fmt::Display for Report {
         for warning in self.warnings() {
             writeln!(out, "  warning: {warning}")?;
         }
-        write!(out, "  {}", self.lattice)
-    }
-}
-
-/// Energy and volume of the water.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ledger {
-    /// Energy of compressed water, ½ Σ β V_p p² [J].
-    pub elastic: f64,
-    /// Water beyond that at rest, with what has been collected since the last fluid step [m³].
-    pub content: f64,
-    /// Vapour [m³].
-    pub vapour: f64,
-    /// Volume between the walls less that of all grains, at the last renewal [m³].
-    pub pores: f64,
-}
-
-impl Ledger {
-    pub(crate) fn of<const N: usize>(water: &Water<N>) -> Self {
-        let now = water.snapshot();
-        let beta = water.model.fluid.compressibility;
-        let volume = water.lattice.volume();
-        let each = now.pressure.iter().zip(&now.porosity);
-        Self {
-            elastic: each.map(|(p, phi)| 0.5 * beta * phi * volume * p * p).sum(),
-            content: now.content,
-            vapour: now.vapour.iter().sum(),
-            pores: now.porosity.iter().map(|phi| phi * volume).sum(),
+        match &self.lattice {
+            Some(lattice) => write!(out, "  {lattice}"),
+            None => write!(
+                out,
+                "  open pores: momentum of the water, pressure implicit in time"
+            ),
         }
     }
 }

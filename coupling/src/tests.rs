@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 
 /// Numbers from -1 to 1 without structure.
-fn random() -> impl FnMut() -> f64 {
+pub(crate) fn random() -> impl FnMut() -> f64 {
     let mut x = 0x2545_f491_4f6c_dd1d_u64;
     move || {
         x ^= x << 13;
@@ -93,6 +93,10 @@ impl<const N: usize> Companion for Probe<N> {
         let pressure = unsafe { self.water.pressure_to_tell() };
         pressure.fill_with(|| 1e5 * random());
     }
+    fn wants_to_be_alone(&self, _: u64) -> bool {
+        false
+    }
+    fn alone(&mut self, _: &Moved) {}
     fn due(&self, _: u64) -> bool {
         false
     }
@@ -208,4 +212,72 @@ fn translation<const N: usize>() {
 fn means_of_one_velocity_are_that_velocity() {
     translation::<3>();
     translation::<5>();
+}
+
+fn portable_follow<const N: usize>() {
+    let run = |portable: bool| {
+        let (model, state) = bed(
+            |random| DVec3::new(random(), random(), random()),
+            [0.3, -0.2],
+        );
+        let mut solver = Solver::new(model, state, 1).unwrap();
+        let mut water = water::<N>(&solver);
+        if portable {
+            water.kernels = crate::kernels::Kernels::portable();
+        }
+        let before = solver.snapshot().state.grains.velocity;
+        solver.advance_together(100, &mut water).unwrap();
+        (before, solver.snapshot().state.grains.velocity)
+    };
+    let ((before, fast), (_, portable)) = (run(false), run(true));
+    let gained = |(a, b): (&DVec3, &DVec3)| (a - b).length();
+    let most = before.iter().zip(&fast).map(gained).fold(0.0, f64::max);
+    let apart = fast.iter().zip(&portable).map(gained).fold(0.0, f64::max);
+    // Rounding of fused multiplications.
+    assert!(
+        most > 1e-3 && apart < 1e-12 * most.max(1.0),
+        "{apart:e} of {most:e} m/s"
+    );
+}
+
+#[test]
+fn portable_loops_follow_those_of_the_processor() {
+    portable_follow::<3>();
+    portable_follow::<5>();
+}
+
+/// Where every grain counts the same, solid is where it has flowed: also where walls move, and
+/// grains cross the sides of the box. Where half of them count less, it is not.
+fn solid_goes_where_it_flows<const N: usize>() {
+    let drift = |loads: f64| -> [f64; 2] {
+        let throw = |random: &mut dyn FnMut() -> f64| DVec3::new(random(), random(), random());
+        let (mut model, state) = bed(throw, [0.3, -0.2]);
+        model.ledger = true;
+        model.step = 3e-5;
+        let mut solver = Solver::new(model, state, 1).unwrap();
+        let mut water = water::<N>(&solver);
+        let before = water.solid.clone();
+        for _ in 0..10 {
+            // Loads as if they had been measured: half of the grains carry this part of the others'.
+            water.loads.mean.fill(1.0);
+            water.loads.mean[..350].fill(loads);
+            solver.advance_together(64, &mut water).unwrap();
+        }
+        let change = before.iter().zip(&water.solid);
+        let squares: f64 = change.map(|(a, b)| (a - b) * (a - b)).sum();
+        let moved = (squares / 180.0).sqrt() / water.lattice.volume();
+        [water.drift.rms().unwrap(), moved]
+    };
+    let [same, moved] = drift(1.0);
+    println!("{same:e} of {moved:e}");
+    assert!(moved > 1e-4 && same < 5e-3 * moved, "{same:e} of {moved:e}");
+    let [other, _] = drift(0.01);
+    println!("{other:e}");
+    assert!(other > 0.1 * moved, "{other:e} of {moved:e}");
+}
+
+#[test]
+fn solid_of_grains_that_count_the_same_goes_where_it_flows() {
+    solid_goes_where_it_flows::<3>();
+    solid_goes_where_it_flows::<5>();
 }

@@ -1,10 +1,14 @@
 //! What goes along with the grains and pushes them in every step: pore water, for one.
 //!
 //! A step of [`Solver::advance_together`] is: grains and walls move; all threads
-//! [`follow`](Companion::follow) them; where it is [`due`](Companion::due), the companion is alone
-//! for a while and [`settles`](Companion::settle); then all threads
+//! [`follow`](Companion::follow) them; the companion is [`alone`](Companion::alone) for a moment
+//! if it wants to, and where it is [`due`](Companion::due) for longer and
+//! [`settles`](Companion::settle); then all threads
 //! [`push`](Companion::push), and contacts add their forces. Nothing is copied: a companion reads
 //! the grains where the solver keeps them, and adds to the very sums that move them.
+//!
+//! Where the solver keeps a ledger, the work of the forces on the grains is booked, half of that
+//! of a drift with the forces before it and half with those after it, as that of the walls.
 //!
 //! The companion of [`Solver::advance`] is `()`: then none of this is compiled in.
 
@@ -14,13 +18,14 @@ use crate::lanes::Row;
 use crate::slab::Slab;
 use crate::{Error, Model, Solver, WallMotion, WallState};
 use glam::DVec3;
+use std::cell::UnsafeCell;
 use std::ops::Range;
 
 /// Something that follows the motion of grains and walls and pushes them in every step.
 ///
 /// Grains are in the solver's order, which changes with each neighbour search. For the same
 /// bits on any number of threads, sums must not depend on how grains are shared out.
-pub trait Companion: Sync {
+pub trait Companion: Send + Sync {
     /// Is there anything to do?
     const ACTIVE: bool = true;
 
@@ -34,7 +39,14 @@ pub trait Companion: Sync {
     /// just made, half a step behind the positions.
     fn follow(&self, moved: &Moved, threads: &Threads);
 
-    /// Is [`settle`](Self::settle) to be called in this step (the first one is 1)?
+    /// Is [`alone`](Self::alone) to be called in this step (the first one is 1)?
+    fn wants_to_be_alone(&self, step: u64) -> bool;
+
+    /// Alone, after all have followed, while the threads wait: for what is done often. What goes
+    /// wrong is told in [`settle`](Self::settle).
+    fn alone(&mut self, moved: &Moved);
+
+    /// Is [`settle`](Self::settle) to be called in this step?
     fn due(&self, step: u64) -> bool;
 
     /// Alone, between the motion of a step and its forces.
@@ -53,6 +65,33 @@ pub trait Companion: Sync {
     fn wall_force(&self, wall: usize) -> f64;
 }
 
+/// A companion as the threads of a step see it: all at once, and now and then one alone.
+pub(crate) struct Beside<'a, C>(&'a UnsafeCell<C>);
+
+// SAFETY: access goes through `shared` and `alone`, whose callers promise not to mix them.
+unsafe impl<C: Send + Sync> Sync for Beside<'_, C> {}
+
+impl<'a, C> Beside<'a, C> {
+    pub fn new(companion: &'a mut C) -> Self {
+        Self(UnsafeCell::from_mut(companion))
+    }
+
+    /// # Safety
+    /// Nobody is alone with it.
+    pub unsafe fn shared(&self) -> &C {
+        // SAFETY: the caller's promise.
+        unsafe { &*self.0.get() }
+    }
+
+    /// # Safety
+    /// Nobody else has it, until all have met.
+    #[allow(clippy::mut_from_ref, reason = "that is the point, as `Shared::write`")]
+    pub unsafe fn alone(&self) -> &mut C {
+        // SAFETY: the caller's promise.
+        unsafe { &mut *self.0.get() }
+    }
+}
+
 /// No companion.
 impl Companion for () {
     const ACTIVE: bool = false;
@@ -61,6 +100,10 @@ impl Companion for () {
         Ok(())
     }
     fn follow(&self, _: &Moved, _: &Threads) {}
+    fn wants_to_be_alone(&self, _: u64) -> bool {
+        false
+    }
+    fn alone(&mut self, _: &Moved) {}
     fn due(&self, _: u64) -> bool {
         false
     }
@@ -172,6 +215,11 @@ impl Solver {
         self.walk(steps, companion)
     }
 
+    /// Work of the companion on the grains since it joined [J]; zero without a ledger.
+    pub fn work_of_companion(&self) -> f64 {
+        self.losses().companion
+    }
+
     /// The grains where the solver keeps them.
     pub fn bed(&self) -> Bed<'_> {
         self.bed_after(0)
@@ -232,6 +280,9 @@ impl Solver {
                 *force = Row::new(force.xyz() + push, force.w());
                 let back = 0.5 * self.sorted.kick[k] * push;
                 velocity[k] = Row::new(velocity[k].xyz() - back, velocity[k].w());
+            }
+            if self.model.ledger {
+                slab.pushed = pushes[slab.own.clone()].to_vec();
             }
         }
         for (k, wall) in self.model.walls.iter().enumerate() {

@@ -160,6 +160,8 @@ impl Cut<'_> {
             force,
             torque: vec![Row::ZERO; if slides { count + 1 } else { 0 }],
             rolling_loss: vec![0.0; if turns { count + 1 } else { 0 }],
+            pushed: Vec::new(),
+            apart: Vec::new(),
             losses: vec![Default::default(); count.div_ceil(BLOCK)],
             held: gauged(&self.layers[0]),
             driven: gauged(&self.layers[1]),

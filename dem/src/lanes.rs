@@ -4,6 +4,9 @@
 //! Both do the same operations in the same order; only the rounding of fused
 //! multiplications differs. Everything here is `inline(always)` and free of closures:
 //! a closure would not inherit the vector features of the kernel that it is inlined into.
+//!
+//! Public for what goes along with the grains (`coupling`), which chooses its loops in the same
+//! way; nobody else should use it.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -75,23 +78,31 @@ pub(crate) unsafe fn row_mut(rows: &mut [Row], place: Place) -> &mut Row {
 }
 
 /// Four doubles.
-pub(crate) trait Lanes:
+pub trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// One truth value a lane.
     type Mask: Copy;
 
+    /// `x` in each lane.
     fn splat(x: f64) -> Self;
+    /// From memory.
     fn load(row: &Row) -> Self;
+    /// To memory.
     fn store(self, row: &mut Row);
     /// `self * b + c`
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// `c - self * b`
     fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// Square root.
     fn sqrt(self) -> Self;
+    /// The greater of each two.
     fn max(self, other: Self) -> Self;
+    /// Without signs.
     fn abs(self) -> Self;
+    /// To the nearest whole number, halves to even ones.
     fn round(self) -> Self;
+    /// Is it greater?
     fn greater(self, other: Self) -> Self::Mask;
     /// `a` where the mask is set, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
@@ -196,7 +207,7 @@ impl<V: Lanes> V3<V> {
 /// Plain arrays, for processors without AVX2.
 #[derive(Clone, Copy)]
 #[repr(C, align(32))]
-pub(crate) struct Portable([f64; 4]);
+pub struct Portable([f64; 4]);
 
 macro_rules! lanewise {
     ($($trait:ident $method:ident $op:tt),*) => {$(
@@ -296,7 +307,7 @@ impl Lanes for Portable {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx2::Avx2;
+pub use avx2::Avx2;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
@@ -308,7 +319,7 @@ mod avx2 {
     /// runs after the processor was asked, may use it: that is what every `unsafe` below
     /// relies on.
     #[derive(Clone, Copy)]
-    pub(crate) struct Avx2(__m256d);
+    pub struct Avx2(__m256d);
 
     macro_rules! lanewise {
         ($($trait:ident $method:ident $intrinsic:ident),*) => {$(

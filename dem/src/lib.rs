@@ -13,7 +13,8 @@ mod cut;
 pub mod gpu;
 mod grains;
 mod kernels;
-mod lanes;
+#[doc(hidden)]
+pub mod lanes;
 mod ledger;
 pub mod measure;
 mod model;

@@ -173,6 +173,7 @@ impl Solver {
         ledger.dissipated_viscosity = loss.viscosity;
         ledger.dissipated_rolling = loss.rolling;
         ledger.work_outside = loss.outside;
+        ledger.work_companion = loss.companion;
         ledger.work_walls = self.boundary.work_walls;
         ledger.work_drive = self.boundary.work_drive;
         ledger.work_gravity -= start.work_gravity;
@@ -216,6 +217,10 @@ impl Ledger {
 
     /// Work done on the grains since the solver began [J].
     pub fn work(&self) -> f64 {
-        self.work_walls + self.work_drive + self.work_gravity + self.work_outside
+        self.work_walls
+            + self.work_drive
+            + self.work_gravity
+            + self.work_outside
+            + self.work_companion
     }
 }

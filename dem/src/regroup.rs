@@ -17,8 +17,9 @@ impl Slab {
     /// Move the pairs that touched in the last evaluation before the others of their stretch.
     pub fn regroup(&mut self) {
         let mut first = 0;
-        let mut apart = Vec::new();
+        let mut apart = std::mem::take(&mut self.apart);
         for &end in &self.stretches {
+            apart.reserve(end - first);
             let mut free = first;
             for slot in first..end {
                 let (group, lane) = (slot / 4, slot % 4);
@@ -52,5 +53,6 @@ impl Slab {
             }
             first = end;
         }
+        self.apart = apart;
     }
 }

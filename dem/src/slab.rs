@@ -41,6 +41,10 @@ pub(crate) struct Slab {
     pub torque: Vec<Row>,
     /// Sum of rolling losses of own grains [J].
     pub rolling_loss: Vec<f64>,
+    /// Forces of a companion on own grains in the last evaluation [N], while its work is booked.
+    pub pushed: Vec<Row>,
+    /// Pairs on their way behind those that touch (`regroup.rs`): empty, but for its memory.
+    pub apart: Vec<([Place; 2], [Place; 2])>,
     /// Losses since the solver began, one entry a block of own grains.
     pub losses: Vec<Loss>,
     /// Own grains whose horizontal motion is held, and driven, with their place in the gauge.
@@ -67,6 +71,8 @@ pub(crate) struct Loss {
     pub rolling: f64,
     /// Work of outside forces.
     pub outside: f64,
+    /// Work of a companion's forces.
+    pub companion: f64,
 }
 
 /// The near grains of one wall in one slab.
@@ -88,6 +94,50 @@ impl Slab {
         (0..count).filter(|slot| touching[slot / 4] >> (slot % 4) & 1 == 1)
     }
 
+    /// Book the half of the last drift's work that the companion's forces before it did, and set
+    /// the sums of forces aside: what is added from now on is the companion's. `velocity` of own
+    /// grains [m/s], `half` a step [s].
+    pub fn set_aside(&mut self, velocity: &[Row], half: f64) {
+        self.pushed.resize(velocity.len(), Row::ZERO);
+        self.book(velocity, half, |pushed, force| (*pushed, *force));
+    }
+
+    /// Take what has been added as the companion's forces, and book the other half of the work.
+    pub fn take_pushed(&mut self, velocity: &[Row], half: f64) {
+        self.book(velocity, half, |aside, force| {
+            let mut pushed = Row::ZERO;
+            for lane in 0..4 {
+                pushed.0[lane] = force.0[lane] - aside.0[lane];
+            }
+            (pushed, pushed)
+        });
+    }
+
+    /// Book the work of the companion's forces over half of a drift with these velocities.
+    pub fn book_companion(&mut self, velocity: &[Row], half: f64) {
+        self.book(velocity, half, |pushed, _| (*pushed, *pushed));
+    }
+
+    /// Book the work of what `take` makes of what is kept of a companion and of the sums of forces,
+    /// and keep what else it gives.
+    #[inline(always)]
+    fn book(&mut self, velocity: &[Row], half: f64, take: impl Fn(&Row, &Row) -> (Row, Row)) {
+        let forces = self.force.chunks(BLOCK).zip(velocity.chunks(BLOCK));
+        let blocks = self.pushed.chunks_mut(BLOCK).zip(forces);
+        for (loss, (pushed, (force, velocity))) in self.losses.iter_mut().zip(blocks) {
+            // Lane by lane: the compiler takes several at once.
+            let mut power = [0.0; 4];
+            for ((pushed, force), velocity) in pushed.iter_mut().zip(force).zip(velocity) {
+                let (works, kept) = take(pushed, force);
+                for (lane, power) in power.iter_mut().enumerate() {
+                    *power += works.0[lane] * velocity.0[lane];
+                }
+                *pushed = kept;
+            }
+            loss.companion += half * (power[0] + power[1] + power[2]);
+        }
+    }
+
     pub fn bytes(&self) -> usize {
         let walls = self.walls.iter();
         2 * size_of_val(&self.pairs[..])
@@ -96,7 +146,7 @@ impl Slab {
             + walls
                 .map(|w| size_of_val(&w.grains[..]) + w.slots.bytes())
                 .sum::<usize>()
-            + (self.force.len() + self.torque.len()) * size_of::<Row>()
+            + (self.force.len() + self.torque.len() + self.pushed.len()) * size_of::<Row>()
             + self.rolling_loss.len() * 8
             + self.losses.len() * size_of::<Loss>()
     }

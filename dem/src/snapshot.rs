@@ -67,6 +67,8 @@ pub struct Ledger {
     pub work_gravity: f64,
     /// Work of outside forces on the grains.
     pub work_outside: f64,
+    /// Work on the grains of what goes along with them, such as pore water (CPU).
+    pub work_companion: f64,
     /// Work that arrived and is not found: work - change of energy - dissipation.
     pub residual: f64,
 }

@@ -2,7 +2,7 @@
 
 use crate::barrier::Barrier;
 use crate::boundary::{Boundary, Loading};
-use crate::companion::Companion;
+use crate::companion::{Beside, Companion};
 use crate::grains::Horizontal;
 use crate::kernels::Kernels;
 use crate::lanes::Row;
@@ -301,7 +301,8 @@ impl Solver {
     }
 
     /// Let the threads walk.
-    fn dispatch<C: Companion>(&mut self, until: u64, stage: Stage, companion: &C) -> Stop {
+    fn dispatch<C: Companion>(&mut self, until: u64, stage: Stage, companion: &mut C) -> Stop {
+        let companion = Beside::new(companion);
         let slabs: Vec<Mutex<Slab>> = self.sorted.slabs.drain(..).map(Mutex::new).collect();
         let barrier = Barrier::new(self.threads);
         let speeds: Vec<AtomicU64> = (0..self.threads).map(|_| AtomicU64::new(0)).collect();
@@ -311,7 +312,7 @@ impl Solver {
                 .lock()
                 .expect("each thread locks only its own slab");
             let boundary = self.boundary.clone();
-            crew.walk(thread, &mut slab, boundary, until, stage, companion)
+            crew.walk(thread, &mut slab, boundary, until, stage, &companion)
         };
         let (boundary, stop) = match &self.pool {
             None => walk(0),
@@ -368,6 +369,13 @@ impl Solver {
             let mean_radius = self.mean_radius();
             let skin = self.skin * (SEARCH_EVERY / since).clamp(0.5, 2.0);
             self.skin = skin.clamp(SKIN_RANGE[0] * mean_radius, SKIN_RANGE[1] * mean_radius);
+        }
+        // What a companion pushed with before this drift; its order is about to change.
+        let half = 0.5 * self.model.step;
+        // SAFETY: the solver is not stepping, so nobody writes.
+        let velocity = unsafe { self.sorted.rows.velocity.read() };
+        for slab in &mut self.sorted.slabs {
+            slab.book_companion(&velocity[slab.own.clone()], half);
         }
         self.loss = self.losses();
         let outside = self.outside.take().map(|rows| self.by_identity(&rows));
@@ -453,6 +461,7 @@ impl Solver {
             viscosity: sum.viscosity + block.viscosity,
             rolling: sum.rolling + block.rolling,
             outside: sum.outside + block.outside,
+            companion: sum.companion + block.companion,
         })
     }
 

@@ -2,7 +2,7 @@
 
 use crate::barrier::Barrier;
 use crate::boundary::{Boundary, Loading};
-use crate::companion::{Companion, Moved, Threads};
+use crate::companion::{Beside, Companion, Moved, Threads};
 use crate::kernels::Kernels;
 use crate::lanes::Row;
 use crate::motion::{Own, TURN_EVERY, turned};
@@ -82,7 +82,7 @@ impl Crew<'_> {
         mut boundary: Boundary,
         until: u64,
         mut stage: Stage,
-        companion: &C,
+        companion: &Beside<C>,
     ) -> (Boundary, Stop) {
         let _guard = self.barrier.guard();
         let step = self.loading.model.step;
@@ -116,15 +116,37 @@ impl Crew<'_> {
                     walls: &boundary.walls,
                 };
                 if stage != Stage::Followed {
-                    companion.follow(&moved, &threads);
-                    if companion.due(moved.step) {
+                    // SAFETY: nobody is alone with it before all have met.
+                    let wants = unsafe {
+                        companion.shared().follow(&moved, &threads);
+                        companion.shared().wants_to_be_alone(moved.step)
+                    };
+                    if wants {
+                        self.barrier.wait();
+                        if thread == 0 {
+                            // SAFETY: the others wait for this one.
+                            unsafe { companion.alone().alone(&moved) };
+                        }
+                        self.barrier.wait();
+                    }
+                    // SAFETY: as above.
+                    if unsafe { companion.shared().due(moved.step) } {
                         return (boundary, Stop::Due);
                     }
                 }
+                // SAFETY: as above.
+                let companion = unsafe { companion.shared() };
                 self.push_own(slab, &boundary, step, |slab| {
                     let own = slab.own.clone();
-                    let force = &mut slab.force[..own.len()];
-                    companion.push(&moved, &threads, own, force);
+                    let velocity = &moved.velocity[own.clone()];
+                    let books = self.loading.model.ledger;
+                    if books {
+                        slab.set_aside(velocity, 0.5 * step);
+                    }
+                    companion.push(&moved, &threads, own, &mut slab.force[..velocity.len()]);
+                    if books {
+                        slab.take_pushed(velocity, 0.5 * step);
+                    }
                 });
                 for (k, force) in boundary.companion_force.iter_mut().enumerate() {
                     *force = companion.wall_force(k);

@@ -28,10 +28,6 @@ pub const FEWEST: usize = 1000;
 /// 100 us, several times what it takes to start a step on a GPU.
 pub const FEWEST_CELLS: usize = 20_000;
 
-/// Why no GPU computes grains with water between them.
-pub const ON_CPU: &str = "grains with water between them are computed on the CPU alone, so far; \
-                          write --backend cpu, or take [water] out of the scene";
-
 /// Who computes.
 #[derive(Clone, Debug)]
 pub enum Machine {
@@ -57,12 +53,19 @@ impl Backend {
     /// The machine for `scene`; `threads` of the CPU, 0: one for each core.
     ///
     /// # Errors
-    /// A GPU that is asked for and is not there, does not open, or has no water between grains:
-    /// never another machine instead.
+    /// A GPU that is asked for and is not there, or does not open: never another machine
+    /// instead.
     pub fn choose_for(self, scene: &Scene, threads: usize) -> Result<Chosen> {
-        match scene.water {
-            Some(_) => self.choose_for_wet(threads),
-            None => self.choose(scene.start.grains.len(), threads),
+        match (&scene.water, self) {
+            (Some(_), Self::Auto) => {
+                let mut chosen = Self::Cpu.choose(scene.start.grains.len(), threads)?;
+                chosen.why =
+                    "with water between the grains a GPU is taken where --backend gpu asks \
+                              for it: how fast it is has not been measured"
+                        .into();
+                Ok(chosen)
+            }
+            _ => self.choose(scene.start.grains.len(), threads),
         }
     }
 
@@ -75,19 +78,6 @@ impl Backend {
         let few = (grains < FEWEST)
             .then(|| format!("fewer than {FEWEST} grains are faster here than on a GPU"));
         self.take(few, &format!("{FEWEST} grains or more"), threads)
-    }
-
-    /// The machine for grains with water between them: a CPU.
-    ///
-    /// # Errors
-    /// A GPU that is asked for.
-    fn choose_for_wet(self, threads: usize) -> Result<Chosen> {
-        ensure!(self != Self::Gpu, "--backend gpu: {ON_CPU}");
-        let mut chosen = Self::Cpu.take(None, "", threads)?;
-        if self == Self::Auto {
-            chosen.why = "grains with water between them are computed here alone, so far".into();
-        }
-        Ok(chosen)
     }
 
     /// The machine for water in so many `cells`; `threads` of the CPU, 0: one for each core.

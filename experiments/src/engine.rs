@@ -4,11 +4,11 @@ mod wet;
 
 pub use wet::{Wet, stiffness};
 
-use crate::backend::{Machine, ON_CPU};
+use crate::backend::Machine;
 use crate::output::pores::PoreReading;
 use crate::protocol::Past;
 use crate::scene::{Phase, Pores, Scene};
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use dem::gpu::{
     self,
     memory::{Bounds, Memory},
@@ -21,7 +21,7 @@ pub enum Engine {
     Cpu(Box<dem::Solver>),
     /// On a GPU, in fixed point and single precision.
     Gpu(Box<gpu::Solver>),
-    /// With water between them, on the CPU.
+    /// With water between them, on either.
     Wet(Box<Wet>),
 }
 
@@ -99,10 +99,7 @@ impl Engine {
         water: coupling::Model,
         before: Option<&coupling::State>,
     ) -> Result<Self> {
-        let Machine::Cpu { threads } = machine else {
-            bail!(ON_CPU);
-        };
-        let wet = Wet::new(pores.reach, model, state, water, before, *threads)?;
+        let wet = Wet::new(machine, pores.reach, model, state, water, before)?;
         Ok(Self::Wet(Box::new(wet)))
     }
 
@@ -120,10 +117,13 @@ impl Engine {
     }
 
     /// The water between the grains, if there is any.
-    pub fn water(&self) -> Option<PoreReading> {
+    ///
+    /// # Errors
+    /// A device that fails.
+    pub fn water(&self) -> Result<Option<PoreReading>> {
         match self {
-            Self::Wet(bed) => Some(bed.reading()),
-            Self::Cpu(_) | Self::Gpu(_) => None,
+            Self::Wet(bed) => Ok(Some(bed.reading()?)),
+            Self::Cpu(_) | Self::Gpu(_) => Ok(None),
         }
     }
 
@@ -135,7 +135,7 @@ impl Engine {
         match self {
             Self::Cpu(solver) => Ok(solver.snapshot()),
             Self::Gpu(solver) => solver.snapshot(),
-            Self::Wet(bed) => Ok(bed.grains().snapshot()),
+            Self::Wet(bed) => bed.snapshot(),
         }
     }
 
@@ -144,7 +144,7 @@ impl Engine {
         match self {
             Self::Cpu(solver) => solver.model(),
             Self::Gpu(solver) => solver.model(),
-            Self::Wet(bed) => bed.grains().model(),
+            Self::Wet(bed) => bed.model(),
         }
     }
 
@@ -153,7 +153,7 @@ impl Engine {
         match self {
             Self::Cpu(solver) => solver.memory() as u64,
             Self::Gpu(solver) => solver.memory(),
-            Self::Wet(bed) => bed.grains().memory() as u64,
+            Self::Wet(bed) => bed.memory(),
         }
     }
 }

@@ -11,4 +11,5 @@ pub mod ready;
 pub mod run;
 pub mod scene;
 pub mod start;
+pub mod sweep;
 pub mod water;

@@ -23,13 +23,18 @@ static CAVITY: Dir = include_dir!("$CARGO_MANIFEST_DIR/cavity");
 static TERZAGHI_COLUMN: Dir = include_dir!("$CARGO_MANIFEST_DIR/terzaghi-column");
 static SKIN_DEPTH: Dir = include_dir!("$CARGO_MANIFEST_DIR/skin-depth");
 static WET_CONSOLIDATION: Dir = include_dir!("$CARGO_MANIFEST_DIR/wet-consolidation");
+static COULOMB: Dir = include_dir!("$CARGO_MANIFEST_DIR/coulomb");
+static WET_SHEAR: Dir = include_dir!("$CARGO_MANIFEST_DIR/wet-shear");
+static PRESSURE_CYCLES: Dir = include_dir!("$CARGO_MANIFEST_DIR/pressure-cycles");
+static SEEPAGE: Dir = include_dir!("$CARGO_MANIFEST_DIR/seepage");
+static SETTLING: Dir = include_dir!("$CARGO_MANIFEST_DIR/settling");
 static PACKING: Dir = include_dir!("$CARGO_MANIFEST_DIR/packing-permeability");
 
 /// Draws the figures of sheared beds; their `analyse.py` calls it, one folder up or beside it.
 const SHEAR_FIGURES: (&str, &str) = ("shear_figures.py", include_str!("../shear_figures.py"));
 
 /// All of them.
-pub const ALL: [Ready; 10] = [
+pub const ALL: [Ready; 15] = [
     sheared("small-shear", &SMALL_SHEAR),
     sheared("poster-shear", &POSTER_SHEAR),
     water("poiseuille", &POISEUILLE),
@@ -40,6 +45,15 @@ pub const ALL: [Ready; 10] = [
     water("skin-depth", &SKIN_DEPTH),
     water("packing-permeability", &PACKING),
     water("wet-consolidation", &WET_CONSOLIDATION),
+    Ready {
+        name: "coulomb",
+        folder: &COULOMB,
+        shared: None,
+    },
+    water("wet-shear", &WET_SHEAR),
+    water("pressure-cycles", &PRESSURE_CYCLES),
+    water("seepage", &SEEPAGE),
+    water("settling", &SETTLING),
 ];
 
 const fn sheared(name: &'static str, folder: &'static Dir<'static>) -> Ready {

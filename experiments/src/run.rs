@@ -267,14 +267,14 @@ impl Run<'_> {
             Engine::of_phase(scene, phase, machine, model, state, &self.past, stiffness)
                 .with_context(in_phase)?;
         if let Engine::Wet(wet) = &engine {
-            self.progress
-                .say(&format!("{:>12}: {}", phase.name, wet.report()));
+            let report = water::describe(engine.model(), &wet.report()?);
+            self.progress.say(&format!("{:>12}: {report}", phase.name));
         }
         let model = Arc::new(engine.model().clone());
         if number == 0 {
             let now = Arc::new(engine.snapshot().with_context(in_phase)?);
             self.writer
-                .send(bed.frame(&model, &now, engine.water(), intervals::START))?;
+                .send(bed.frame(&model, &now, engine.water()?, intervals::START))?;
         }
         loop {
             let next = self.intervals.next(done).min(watch.next(done)).min(total);
@@ -321,7 +321,7 @@ impl Run<'_> {
             }
             if intervals::any(due) {
                 self.writer
-                    .send(bed.frame(&model, &now, engine.water(), due))?;
+                    .send(bed.frame(&model, &now, engine.water()?, due))?;
                 bed.read(due, &now);
             }
             if let Some(outcome) = outcome {
@@ -331,7 +331,7 @@ impl Run<'_> {
                         phase: phase.name.clone(),
                         reference,
                     }),
-                    water: water::past(&engine, stiffness),
+                    water: water::past(&engine, stiffness)?,
                 };
                 let saved = Saved {
                     state: now.state.clone(),
@@ -339,7 +339,7 @@ impl Run<'_> {
                     past: self.past.clone(),
                 };
                 output::state::save(&self.options.out.join(STATE), &saved, &self.header)?;
-                let summary = bed.summary(&model, phase, outcome, done, &now, engine.water());
+                let summary = bed.summary(&model, phase, outcome, done, &now, engine.water()?);
                 return Ok((saved.state, summary));
             }
         }

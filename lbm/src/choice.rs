@@ -25,18 +25,24 @@ const MACH: f64 = 0.05;
 /// By how much the choice stays away from what is refused.
 const MARGIN: f64 = 1.2;
 
-/// Extremes of what is given.
-pub(crate) struct Extremes {
+/// Extremes of the bed: all that a lattice must know of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremes {
+    /// Least and greatest porosity.
     pub porosity: [f64; 2],
+    /// Mean porosity.
     pub mean_porosity: f64,
+    /// Least and greatest permeability of the cells of the bed [m²].
     pub permeability: [f64; 2],
-    /// Of k/φ over the cells of the bed.
+    /// The same of k/φ.
     pub mobility: [f64; 2],
+    /// Are there cells without grains?
     pub free_cells: bool,
 }
 
 impl Extremes {
-    fn of(model: &Model) -> Self {
+    /// Those of `model`.
+    pub fn of(model: &Model) -> Self {
         let mut found = Self {
             porosity: [f64::INFINITY, 0.0],
             mean_porosity: 1.0,
@@ -80,8 +86,20 @@ impl Scaling {
     /// [`Error::Invalid`] for what cannot be stable or accurate, with the remedy.
     pub fn choose<T: Real>(model: &Model, thickness: f64) -> Result<Self, Error> {
         crate::check::check(model)?;
-        let extremes = Extremes::of(model);
-        let regime = model.regime.unwrap_or_else(|| regime(model, &extremes));
+        Self::choose_for::<T>(model, &Extremes::of(model), thickness)
+    }
+
+    /// The same for a bed of these extremes, whatever fields `model` has: for beds that live where
+    /// the host does not see them.
+    ///
+    /// # Errors
+    /// As [`choose`](Self::choose).
+    pub fn choose_for<T: Real>(
+        model: &Model,
+        extremes: &Extremes,
+        thickness: f64,
+    ) -> Result<Self, Error> {
+        let regime = model.regime.unwrap_or_else(|| regime(model, extremes));
         let (dx, fluid) = (model.spacing, model.fluid);
         let stretch = thickness / dx;
         let flat = stretch.min(1.0);
@@ -121,7 +139,7 @@ impl Scaling {
             }
         };
 
-        let scaling = Self::of(model, &extremes, regime, step, density);
+        let scaling = Self::of(model, extremes, regime, step, density);
         scaling.judge::<T>(model, stretch)?;
         Ok(scaling)
     }
@@ -131,8 +149,20 @@ impl Scaling {
     /// # Errors
     /// [`Error::Invalid`] where it would not be stable or accurate.
     pub(crate) fn with_bed<T: Real>(&self, model: &Model, stretch: f64) -> Result<Self, Error> {
-        let extremes = Extremes::of(model);
-        let new = Self::of(model, &extremes, self.regime, self.step, self.density);
+        self.with_extremes::<T>(model, &Extremes::of(model), stretch)
+    }
+
+    /// The same for a bed of these extremes.
+    ///
+    /// # Errors
+    /// As above.
+    pub(crate) fn with_extremes<T: Real>(
+        &self,
+        model: &Model,
+        extremes: &Extremes,
+        stretch: f64,
+    ) -> Result<Self, Error> {
+        let new = Self::of(model, extremes, self.regime, self.step, self.density);
         new.judge::<T>(model, stretch)?;
         Ok(new)
     }

@@ -130,8 +130,9 @@ unsafe fn sweep<T: Real, V: Lanes<T>, S: Lanes<T>, L: Law<T>>(
 ) {
     let cells = populations.grid.cells[0];
     let periodic = populations.grid.extent[0] == cells;
+    let slots = populations.slots(odd);
     for span in spans {
-        let row = populations.row(span.y as usize, span.z as usize, odd);
+        let row = slots.row(span.y as usize, span.z as usize);
         let (mut x, end) = (span.begin as usize, span.end as usize);
         let wraps = periodic && end == cells;
         // SAFETY: the caller's promise.

@@ -28,6 +28,7 @@ mod start;
 mod state;
 mod step;
 
+pub use choice::Extremes;
 pub use lanes::Real;
 pub use model::{Bed, Ends, Field, Fluid, Model, Regime, Side};
 pub use scaling::Scaling;

@@ -203,12 +203,34 @@ impl<T: Real> Populations<T> {
         }
     }
 
-    /// The slots of a row of cells in step `odd`.
+    /// The slots of all cells in step `odd`, to be asked for rows of them.
     #[inline(always)]
-    pub fn row(&self, y: usize, z: usize, odd: bool) -> Row<T> {
+    pub fn slots(&self, odd: bool) -> Slots<T> {
+        let (first, second) = self.pairs(odd);
+        Slots {
+            grid: self.grid,
+            rest: self.rest(),
+            first,
+            second,
+        }
+    }
+}
+
+/// Where the slots of a lattice begin.
+pub(crate) struct Slots<T> {
+    grid: Grid,
+    rest: *mut T,
+    first: [*mut T; PAIRS],
+    second: [*mut T; PAIRS],
+}
+
+impl<T> Slots<T> {
+    /// Those of a row of cells.
+    #[inline(always)]
+    pub fn row(&self, y: usize, z: usize) -> Row<T> {
         let grid = &self.grid;
         let own = grid.row(y, z);
-        let (mut first, mut second) = self.pairs(odd);
+        let (mut first, mut second) = (self.first, self.second);
         // SAFETY: rows of the lattice; the one shifted by a place ends where the row ends,
         // since a row has a place more than cells.
         unsafe {
@@ -220,7 +242,7 @@ impl<T: Real> Populations<T> {
             }
             Row {
                 place: own,
-                rest: self.rest().add(own),
+                rest: self.rest.add(own),
                 first,
                 second,
             }

@@ -57,6 +57,14 @@ impl<T: Real> Solver<T> {
         content
     }
 
+    /// Mean flux along z of a layer of cells [m/s], as a volume per area and time.
+    pub fn upward_flux(&self, layer: usize) -> f64 {
+        let [nx, ny, _] = self.model.cells;
+        let mut flux = vec![[0.0; 3]; nx * ny];
+        self.read_layer(layer, &mut vec![0.0; nx * ny], &mut flux);
+        flux.iter().map(|flux| flux[2]).sum::<f64>() / flux.len() as f64
+    }
+
     /// Volume of water in each cell beyond that at zero pressure [m³], into `to`: x fastest, then
     /// y, then z. Far cheaper than a snapshot.
     ///

@@ -37,6 +37,20 @@ const LOSSES: u32 = WORKS + WALLS;
 const SPREAD: u32 = #{SPREAD}u;
 const LOSSES_READ: u32 = LOSSES + 4u * SPREAD;
 
+#ifdef COMPANION
+// Forces of what goes along with the grains on each wall, along minus its normal, in three slots
+// as above.
+const COMPANION: u32 = LOSSES_READ + 4u;
+// What of them moves the wall, in the same slots: a share of the force, and what is taken off [N].
+@group(0) @binding(42) var<storage, read_write> reliefs: array<vec2<f32>>;
+
+fn companion_force(k: u32, step: u32) -> f32 {
+    let slot = (step % 3u) * WALLS + k;
+    let relief = reliefs[slot];
+    return relief.x * narrow(sum_of(COMPANION + slot)) / scene.force_scale - relief.y;
+}
+#endif
+
 // As all threads of a workgroup see them in this step.
 var<workgroup> now: array<Body, #{BODIES}>;
 
@@ -106,7 +120,10 @@ fn move_body(k: u32, step: u32, keep: bool) {
         if wall.kick > 0.0 {
             let force = narrow(sum_of(slot + k)) / scene.force_scale;
             let before = body.velocity;
-            let pushed = load(k, last) - force - wall.damping * before;
+            var pushed = load(k, last) - force - wall.damping * before;
+#ifdef COMPANION
+            pushed -= companion_force(k, last);
+#endif
             body.velocity += share_of_kick(last) * wall.kick * pushed;
             if keep {
                 // F(s) lies between two drifts: half of it belongs to each.
@@ -139,6 +156,13 @@ fn turn_sums(f: u32, step: u32) {
     let next = ((step + 1u) % 3u) * FORCES + f;
     atomicStore(&sums[2u * next], 0u);
     atomicStore(&sums[2u * next + 1u], 0u);
+#ifdef COMPANION
+    if f < WALLS {
+        let beside = COMPANION + ((step + 1u) % 3u) * WALLS + f;
+        atomicStore(&sums[2u * beside], 0u);
+        atomicStore(&sums[2u * beside + 1u], 0u);
+    }
+#endif
 }
 
 // Velocity of the driven layer after the kick of `step`. A shear stress is known to act only

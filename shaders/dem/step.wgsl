@@ -5,6 +5,9 @@
 // move_all     a thread a grain       the second half, once the force on the driven layer is
 //                                     known
 // measure_all  LANES threads a grain  forces and histories of this instant, changing nothing
+//
+// With COMPANION something goes along with the grains (dem/src/gpu/companion.rs): its forces are
+// there before a step is dispatched. With LOADS the step tells how hard each grain is pressed.
 
 #import dem::wide::{Wide, widen, carry, fits, in_range, add_to_sum}
 #import dem::fixed::Place
@@ -29,10 +32,19 @@
 // Number of that step.
 @group(0) @binding(19) var<storage, read> changed: array<u32>;
 #endif
+#ifdef COMPANION
+// What goes along with the grains pushes each of them with [N].
+@group(0) @binding(27) var<storage, read> companions: array<vec4<f32>>;
+#endif
+#ifdef LOADS
+// How hard each grain is pressed by its contacts: the sum of their normal forces [N].
+@group(0) @binding(28) var<storage, read_write> loads: array<f32>;
+#endif
 
 const THREADS: u32 = 64u;
 const LANES: u32 = #{LANES}u;
-// Sums of a workgroup: forces, and losses (friction, viscosity, rolling, work from outside).
+// Sums of a workgroup: forces, and losses (friction, viscosity, rolling, work from outside or of a
+// companion).
 const GATHERED: u32 = FORCES + 4u;
 
 var<workgroup> partial: array<Sum, #{PARTIALS}>;
@@ -86,7 +98,14 @@ fn move_one(g: u32, now_step: u32, place: Place, me: Motion, own: Own, force: ve
     let work = scene.step * (dot(pushed, moved.velocity) + dot(turned, moved.spin));
     gather(FORCES + 3u, work * scene.energy_scale);
 #else
-    move_grain(g, now_step, place, me, own, force, torque, driven);
+    let moved = move_grain(g, now_step, place, me, own, force, torque, driven);
+#ifdef COMPANION
+#ifdef LEDGER
+    // The force lies between two drifts: half of it belongs to each. There is none before the first.
+    let drifts = select(me.velocity, vec3<f32>(0.0), now_step == 0u) + moved.velocity;
+    gather(FORCES + 3u, 0.5 * scene.step * dot(companions[g].xyz, drifts) * scene.energy_scale);
+#endif
+#endif
 #endif
 }
 
@@ -120,7 +139,7 @@ fn all_of_step(
     let half = (now_step & 1u) * scene.count;
     let first = now_step == 0u;
     let acts = going && g < scene.count;
-    var sum = Sum(vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0));
+    var sum = Sum();
     var place: Place;
     var me: Motion;
     if acts {
@@ -140,6 +159,9 @@ fn all_of_step(
             sum.force += other.force;
             sum.torque += other.torque;
             sum.lost += other.lost;
+#ifdef LOADS
+            sum.load += other.load;
+#endif
         }
     }
 #endif
@@ -149,7 +171,24 @@ fn all_of_step(
         for (var k = 0u; k < WALLS; k++) {
             let pressed = touch_wall(k, g, place, me, first, &flags, &sum);
             gather(k, pressed * scene.force_scale);
+#ifdef LOADS
+            sum.load += max(pressed, 0.0);
+#endif
         }
+#ifdef LOADS
+        loads[g] = sum.load;
+#endif
+#ifdef COMPANION
+        sum.force += companions[g].xyz;
+#ifdef READ
+#ifdef LEDGER
+        // What the step to come has not booked yet of the drift before.
+        if !first {
+            gather(FORCES + 3u, 0.5 * scene.step * dot(companions[g].xyz, me.velocity) * scene.energy_scale);
+        }
+#endif
+#endif
+#endif
         if (own.flags & HELD) != 0u {
             gather(HELD_FORCE, sum.force.x * scene.force_scale);
         }

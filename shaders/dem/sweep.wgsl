@@ -52,6 +52,9 @@ struct Sum {
     force: vec3<f32>,  // N
     torque: vec3<f32>, // N m
     lost: vec3<f32>,   // J
+#ifdef LOADS
+    load: f32,         // N; of normal forces that push
+#endif
 }
 
 // What entry `e` remembers.
@@ -166,6 +169,9 @@ fn meet(e: u32, half: u32, my_place: Place, me: Motion, first: bool, sum: ptr<fu
     remember(e, j, word, after, force, response.couple, books);
 
     (*sum).force += sign * force;
+#ifdef LOADS
+    (*sum).load += max(response.normal_force, 0.0);
+#endif
 #ifdef SLIDES
     let arm = law::torque_arm(me.radius, g.overlap, false);
     (*sum).torque -= arm * cross(g.normal, response.tangential);

@@ -15,8 +15,18 @@
 // Number of the step, even with the number since the start; and row of what the sides give.
 @group(0) @binding(31) var<uniform> tick: u32;
 
+#ifdef GUARDED
+// 0: nothing is to be done.
+@group(0) @binding(35) var<storage, read> guard: array<u32>;
+#endif
+
 @compute @workgroup_size(#{GROUP_X}, #{GROUP_Y}, #{GROUP_Z})
 fn time_step(@builtin(global_invocation_id) at: vec3<u32>) {
+#ifdef GUARDED
+    if guard[0] == 0u {
+        return;
+    }
+#endif
     if any(at >= setting.cells) {
         return;
     }

@@ -3,6 +3,7 @@
 use crate::kernel::Kernel;
 use crate::{Adapter, Array, Choice, Error, Parts, Recording};
 use bytemuck::Pod;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use wgpu::{DeviceDescriptor, ErrorFilter, ExperimentalFeatures, Features, MemoryHints, Trace};
 
@@ -15,6 +16,17 @@ pub struct Device {
     pub adapter: Arc<Adapter>,
     /// What went wrong outside of any call.
     trouble: Arc<Mutex<Option<Error>>>,
+    /// Bytes that crossed to the device and back.
+    pub(crate) traffic: Arc<[AtomicU64; 2]>,
+}
+
+/// Bytes that have crossed between the host and a device since it was opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Written to the device.
+    pub written: u64,
+    /// Read from it.
+    pub read: u64,
 }
 
 impl Device {
@@ -64,6 +76,7 @@ impl Device {
             queue,
             adapter: Arc::new(adapter),
             trouble,
+            traffic: Arc::default(),
         })
     }
 
@@ -157,10 +170,17 @@ impl Device {
         let mut left = values;
         for piece in array.pieces(first..first + values.len()) {
             let (now, rest) = left.split_at(piece.count);
-            let bytes = bytemuck::cast_slice(now);
+            let bytes: &[u8] = bytemuck::cast_slice(now);
+            self.traffic[0].fetch_add(bytes.len() as u64, Ordering::Relaxed);
             self.queue.write_buffer(piece.buffer, piece.offset, bytes);
             left = rest;
         }
+    }
+
+    /// Bytes that have crossed so far.
+    pub fn traffic(&self) -> Traffic {
+        let [written, read] = [0, 1].map(|k| self.traffic[k].load(Ordering::Relaxed));
+        Traffic { written, read }
     }
 
     /// Compile entry point `entry` of `module`.

@@ -34,7 +34,7 @@ mod timing;
 
 pub use adapter::{Adapter, Choice, adapters};
 pub use array::{Array, Bindable};
-pub use device::Device;
+pub use device::{Device, Traffic};
 pub use kernel::{Bound, Kernel};
 pub use library::{Flags, compose, compose_text, files};
 pub use naga_oil;

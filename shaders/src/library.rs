@@ -13,6 +13,7 @@ use naga_oil::compose::{
 };
 use std::collections::HashMap;
 
+static COUPLING: Dir = include_dir!("$CARGO_MANIFEST_DIR/coupling");
 static DEM: Dir = include_dir!("$CARGO_MANIFEST_DIR/dem");
 static LBM: Dir = include_dir!("$CARGO_MANIFEST_DIR/lbm");
 
@@ -59,6 +60,13 @@ impl Flags {
         self
     }
 
+    /// With all of `others` too.
+    pub fn and(mut self, others: &Self) -> Self {
+        self.values.extend(others.values.clone());
+        self.parts.extend(others.parts.clone());
+        self
+    }
+
     fn expand(&self, text: &str) -> Result<String, Error> {
         parts::expand(text, |name| self.parts.get(name).copied())
     }
@@ -72,6 +80,7 @@ impl Flags {
 /// Path and text of every WGSL file, as `dem/step.wgsl`.
 pub fn files() -> Vec<(String, &'static str)> {
     let mut found = Vec::new();
+    collect("coupling", &COUPLING, &mut found);
     collect("dem", &DEM, &mut found);
     collect("lbm", &LBM, &mut found);
     found.sort_unstable();

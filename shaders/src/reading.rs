@@ -4,6 +4,7 @@ use crate::{Array, Device, Error};
 use bytemuck::Pod;
 use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 use wgpu::{BufferUsages, CommandEncoder, MapMode};
 
 /// Copies of arrays on their way to the host.
@@ -59,6 +60,7 @@ impl Reading {
         let (first, len) = (self.staging.len(), range.len());
         for piece in array.pieces(range) {
             let bytes = (piece.count * size_of::<T>()).next_multiple_of(4) as u64;
+            self.device.traffic[1].fetch_add(bytes, Ordering::Relaxed);
             let staging = self.device.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("reading"),
                 size: bytes,

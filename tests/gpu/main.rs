@@ -17,6 +17,7 @@ mod laws;
 mod overlap;
 mod parts;
 mod plane_shear;
+mod pores;
 mod poster;
 mod program;
 mod rounding;
@@ -48,5 +49,6 @@ fn main() {
     program::list(&mut suite);
     fall::list(&mut suite);
     fluid::list(&mut suite);
+    pores::list(&mut suite);
     suite.run();
 }

@@ -7,6 +7,7 @@ mod pores;
 mod protocol;
 mod ready_made;
 mod resolved;
+mod sweep;
 mod water;
 
 use experiments::ready::{self, Ready};

@@ -2,6 +2,7 @@
 
 use super::read;
 use experiments::backend::Backend;
+use experiments::output::FileKind;
 use experiments::ready;
 use experiments::run::{Options, run};
 use std::sync::atomic::AtomicBool;
@@ -15,6 +16,9 @@ fn every_ready_made_experiment_of_grains_runs_a_few_steps_of_every_phase() {
             "grains.count=100".into(),
             "box.size=[\"60 mm\", \"60 mm\"]".into(),
         ];
+        if experiment.scene().contains("\nlayers ") {
+            sets.push("water.layers=3".into());
+        }
         for phase in &names {
             sets.push(format!(
                 "phase.{}.end={{ duration = \"0.1 ms\" }}",
@@ -33,12 +37,15 @@ fn every_ready_made_experiment_of_grains_runs_a_few_steps_of_every_phase() {
         };
         let summary = run(&scene, &options, &AtomicBool::new(false)).unwrap();
         assert_eq!(summary.phases.len(), names.len());
-        for file in ["series.nc", "profiles.nc", "grains.nc", "state.h5"] {
-            assert!(
-                options.out.join(file).is_file(),
-                "{file} of {}",
-                experiment.name
-            );
+        let profiles = scene.output.files[FileKind::Profiles].is_some();
+        for (file, asked) in [
+            ("series.nc", true),
+            ("profiles.nc", profiles),
+            ("grains.nc", true),
+            ("state.h5", true),
+        ] {
+            let there = options.out.join(file).is_file();
+            assert_eq!(there, asked, "{file} of {}", experiment.name);
         }
         let again = run(&scene, &options, &AtomicBool::new(false)).unwrap_err();
         assert!(again.to_string().contains("--force"), "{again}");
@@ -47,6 +54,22 @@ fn every_ready_made_experiment_of_grains_runs_a_few_steps_of_every_phase() {
             ..options
         };
         run(&scene, &forced, &AtomicBool::new(false)).unwrap();
+    }
+}
+
+/// What takes days is not run here, but it is a scene, and has the phases of its small one.
+#[test]
+fn full_scenes_are_scenes() {
+    for name in ["wet-shear", "pressure-cycles"] {
+        let full = ready::file(&format!("{name}/full.toml")).unwrap();
+        let full = read(std::str::from_utf8(full).unwrap(), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let small = read(ready::find(name).unwrap().scene(), &[]).unwrap();
+        let names = |scene: &experiments::scene::Scene| {
+            let each = scene.phases.iter();
+            each.map(|phase| phase.name.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(names(&full), names(&small));
+        assert!(full.start.grains.len() > small.start.grains.len());
     }
 }
 

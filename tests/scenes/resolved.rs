@@ -73,6 +73,7 @@ fn everything_that_was_chosen_is_said() {
         "wall.bottom.surface",
         "grains.radius.min",
         "grains.radius.max",
+        "grains.solid_fraction",
         "contact.law",
         "contact.tension",
         "contact.normal.damping",

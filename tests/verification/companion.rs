@@ -12,6 +12,8 @@ struct Pull {
     lift: f64,
     mass: Vec<f64>,
     arranged: usize,
+    /// Steps in which it was alone, and was settled.
+    alone: Vec<u64>,
     settled: Vec<u64>,
 }
 
@@ -22,6 +24,7 @@ impl Pull {
             lift,
             mass: Vec::new(),
             arranged: 0,
+            alone: Vec::new(),
             settled: Vec::new(),
         }
     }
@@ -36,6 +39,12 @@ impl Companion for Pull {
     fn follow(&self, moved: &Moved, threads: &Threads) {
         assert!(moved.step > 0);
         threads.meet();
+    }
+    fn wants_to_be_alone(&self, step: u64) -> bool {
+        step.is_multiple_of(50)
+    }
+    fn alone(&mut self, moved: &Moved) {
+        self.alone.push(moved.step);
     }
     fn due(&self, step: u64) -> bool {
         step.is_multiple_of(100)
@@ -70,6 +79,7 @@ fn one_that_does_nothing_gives_the_same_bits_as_none() {
         together.advance_together(200, &mut idle).unwrap();
         assert!(together.snapshot().state == alone.snapshot().state);
         assert_eq!(idle.settled, [100, 200, 300, 400, 500]);
+        assert!(idle.alone.iter().copied().eq((1..=10).map(|k| 50 * k)));
         assert!(idle.arranged > 1, "no search was made");
         // It stays.
         assert!(together.advance(1).is_err());

@@ -1,7 +1,9 @@
 //! What resists the water: -∇p = R(φ, |q|) q, one law a file.
 //!
 //! The same number is the force on the grains: φ R q of drag per volume of bed, beside the
-//! pressure on them. Laws that are not linear enter with the flux of the last renewal.
+//! pressure on them. Where pores are open, laws that are not linear enter with the flux of the last
+//! step; on the lattice with that of the last renewal, which finds its way to the right one under
+//! any pressure: a departure of R = a + b q comes back as less than itself, by b q/(a + b q).
 
 mod di_felice;
 mod ergun;
@@ -28,7 +30,38 @@ pub enum Resistance {
     },
 }
 
+/// A law as kernels know it: shaders/coupling/resistance.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Law {
+    /// Permeability, and its bounds [m²].
+    Constant([f64; 3]),
+    /// Prefactor, and bounds of the permeability [m²].
+    Porosity([f64; 3]),
+    /// Diameter [m].
+    Ergun(f64),
+    DiFelice(f64),
+}
+
+impl Law {
+    /// Its numbers, zero where there are fewer.
+    pub fn numbers(self) -> [f64; 3] {
+        match self {
+            Self::Constant(numbers) | Self::Porosity(numbers) => numbers,
+            Self::Ergun(diameter) | Self::DiFelice(diameter) => [diameter, 0.0, 0.0],
+        }
+    }
+}
+
 impl Resistance {
+    /// What kernels must know.
+    pub(crate) fn law(&self) -> Law {
+        match self {
+            Self::Darcy(permeability) => permeability.law(),
+            Self::Ergun { diameter } => Law::Ergun(*diameter),
+            Self::DiFelice { diameter } => Law::DiFelice(*diameter),
+        }
+    }
+
     /// R [Pa s/m²] at porosity `porosity` and flux `flux` [m/s].
     pub fn at(&self, fluid: &Fluid, porosity: f64, flux: f64) -> f64 {
         match *self {

@@ -54,6 +54,14 @@ impl Permeability {
         k.clamp(self.bounds[0], self.bounds[1])
     }
 
+    /// Its number, the law it belongs to, and its bounds: for kernels.
+    pub(super) fn law(&self) -> super::Law {
+        match self.law {
+            Law::Constant(k) => super::Law::Constant([k, self.bounds[0], self.bounds[1]]),
+            Law::Porosity(k_c) => super::Law::Porosity([k_c, self.bounds[0], self.bounds[1]]),
+        }
+    }
+
     /// What is wrong with its numbers, if anything.
     pub(crate) fn fault(&self) -> Option<String> {
         let (Law::Constant(k) | Law::Porosity(k)) = self.law;

@@ -1,7 +1,7 @@
 //! The water as what goes along with the grains: its part of each of their steps.
 
 use super::Water;
-use crate::{Error, NormalStress};
+use crate::NormalStress;
 use dem::{Companion, Moved, Row, Threads};
 use lbm::Side;
 use std::ops::Range;
@@ -13,6 +13,8 @@ impl<const N: usize> Companion for Water<N> {
 
     fn follow(&self, moved: &Moved, threads: &Threads) {
         let pass = self.pass();
+        self.book_walls(moved, threads);
+        self.mark_collected(moved.step, threads);
         pass.follow(moved, threads);
         let predicts = self.model.predicts;
         pass.collect(moved, threads, self.step, |cell, collected| {
@@ -21,37 +23,38 @@ impl<const N: usize> Companion for Water<N> {
         });
     }
 
+    fn wants_to_be_alone(&self, step: u64) -> bool {
+        self.drains(step)
+    }
+
+    fn alone(&mut self, moved: &Moved) {
+        match self.drain(moved.step, moved.walls) {
+            Ok(()) => self.feel(),
+            Err(error) => self.fault = Some(error),
+        }
+    }
+
     fn due(&self, step: u64) -> bool {
-        self.drains(step) || self.renews(step)
+        self.fault.is_some() || self.renews(step)
     }
 
     fn settle(&mut self, bed: &dem::Bed) -> Result<(), String> {
-        let step = bed.step;
-        let mut settle = || {
-            if self.drains(step) {
-                self.drain(step)?;
+        let renewed = match self.fault.take() {
+            Some(error) => Err(error),
+            None => {
+                self.renewed_at = bed.step;
+                self.renew(bed)
             }
-            if self.renews(step) {
-                self.renewed_at = step;
-                self.renew(bed)?;
-            }
-            Ok(())
         };
-        settle().map_err(|error: Error| error.to_string())?;
-        let predicts = self.model.predicts;
-        for cell in 0..self.lattice.count() {
-            let collected = self.fields.collected.get_mut()[cell];
-            let gone = if predicts { collected } else { 0.0 };
-            let pressure = self.pressure_of(cell, gone);
-            self.fields.pressure.get_mut()[cell] = pressure;
-        }
+        renewed.map_err(|error| error.to_string())?;
+        self.feel();
         Ok(())
     }
 
     fn push(&self, moved: &Moved, threads: &Threads, own: Range<usize>, force: &mut [Row]) {
         let pass = self.pass();
         pass.push(moved, threads);
-        pass.gather(moved, own, force, |grain| self.lift[grain]);
+        pass.gather(moved, own, force);
     }
 
     fn wall_force(&self, wall: usize) -> f64 {
@@ -62,9 +65,7 @@ impl<const N: usize> Companion for Water<N> {
         match (self.model.normal_stress, &self.model.sides[side]) {
             (NormalStress::Total, _) => force,
             (NormalStress::Effective, Side::Pressure(signal)) => {
-                let area = self.lattice.spacing.powi(2) * self.lattice.count() as f64
-                    / self.lattice.cells[2] as f64;
-                force - signal.at(self.fluid.time()) * area
+                force - signal.at(self.flow.time()) * self.lattice.area()
             }
             (NormalStress::Effective, _) => 0.0,
         }

@@ -1,6 +1,7 @@
 //! What is read from the water. Reading never changes the run.
 
 use super::Water;
+use super::flow::Flow;
 use crate::Model;
 #[cfg(test)]
 use dem::Row;
@@ -55,6 +56,21 @@ impl<const N: usize> Water<N> {
         [0, 1].map(|side| self.pass().on_wall(side))
     }
 
+    /// Volume of water that left through the bottom and the top wall since this was made [m³], until
+    /// the last fluid step. The sum is exact; where a pressure is prescribed at both, the
+    /// shares follow from the flux in the cells beside them at the end of each fluid step.
+    pub fn left(&self) -> [f64; 2] {
+        self.left
+    }
+
+    /// Momentum of the water [N s]; none where drag holds it, which leaves it without inertia.
+    pub fn momentum(&self) -> [f64; 3] {
+        match &self.flow {
+            Flow::Lattice(_) => [0.0; 3],
+            Flow::Open(open) => open.momentum(&self.lattice),
+        }
+    }
+
     /// The water now.
     pub fn snapshot(&self) -> Snapshot {
         let lattice = &self.lattice;
@@ -63,7 +79,7 @@ impl<const N: usize> Water<N> {
             bottom: lattice.bottom,
             height: lattice.height,
             pressure: vec![0.0; count],
-            flux: self.fluid.snapshot().flux,
+            flux: self.flux(),
             porosity: vec![0.0; count],
             vapour: vec![0.0; count],
             content: 0.0,

@@ -1,18 +1,30 @@
 //! What the water must know of the grains: their weights at the faces, solid volume, storage, lift.
 
 use super::Water;
+use super::flow::Flow;
 use crate::Error;
-use crate::exchange::{Exchange, Loose, Touch, middle};
+use crate::exchange::Place;
 use crate::faces::{DRAG_EVERY, Frozen, Pass};
 use crate::kernel::{folded_cell, folded_face, half_width, shares};
 use crate::lattice::Lattice;
-use dem::Row;
+use crate::open::share;
+use dem::{Horizontal, Row, Shared};
 use glam::DVec3;
+
+/// A grain on the scales.
+struct Weight {
+    /// Its volume [m³], and the parts of it that count and are dragged.
+    volume: f64,
+    counts: f64,
+    loose: f64,
+}
 
 impl<const N: usize> Water<N> {
     /// Weigh the grains and lay them on the lattice: weights, solid volume, storage.
     pub(super) fn weigh(&mut self, bed: &dem::Bed) -> Result<(), Error> {
+        self.book_loose();
         span(&mut self.lattice, self.walls, bed);
+        self.drift_from(bed);
         let lattice = &self.lattice;
         bed.contact_loads(&mut self.scratch.loads);
         let memory = self.model.load_memory;
@@ -20,12 +32,14 @@ impl<const N: usize> Water<N> {
             .read(bed.id, &self.scratch.loads, bed.time, memory);
         let half = self.model.loose * self.loads.over_all();
 
+        // Where pores are open, nothing is short-circuited: all grains count, and all are dragged.
+        let open = self.is_open();
         let gravity = bed.model.gravity.z;
         let density = self.model.fluid.density;
         self.solid.fill(0.0);
-        let mut touches = Vec::with_capacity(bed.id.len());
-        let mut looseness = Vec::with_capacity(bed.id.len());
+        let mut places = Vec::with_capacity(bed.id.len());
         self.lift.clear();
+        let mut weights = Vec::with_capacity(bed.id.len());
         let mut images = Vec::new();
         if N > 3 {
             images.resize(lattice.count(), [0.0; 2]);
@@ -33,17 +47,25 @@ impl<const N: usize> Water<N> {
         for k in 0..bed.id.len() {
             let row = bed.position[k];
             let volume = volume(row);
-            self.lift.push(-density * gravity * volume);
             let weight = (bed.mass[k] - density * volume).abs() * gravity.abs();
-            let counts = self.loads.weight(bed.id[k], weight, half);
-            let at = place(lattice, row.xyz());
-            deposit::<N>(lattice, at, volume, &mut self.solid);
+            self.lift.push(-density * gravity * volume);
+            let counts = match open {
+                true => 1.0,
+                false => self.loads.weight(bed.id[k], weight, half),
+            };
+            let place = Place::of(lattice, in_cells(lattice, row.xyz()));
+            deposit::<N>(lattice, place, volume, &mut self.solid);
             if N > 3 {
-                add_images::<N>(lattice, at, counts * volume, &mut images);
+                add_images::<N>(lattice, place, counts * volume, &mut images);
             }
-            touches.push(Touch::new(lattice, at, counts * volume));
-            looseness.push(1.0 - counts);
+            places.push(place);
+            weights.push(Weight {
+                volume,
+                counts,
+                loose: if open { 1.0 } else { 1.0 - counts },
+            });
         }
+        self.exchange.lay(lattice, &places);
         for cell in 0..lattice.count() {
             let pores = lattice.volume() - self.solid[cell];
             if pores < 0.02 * lattice.volume() {
@@ -59,53 +81,63 @@ impl<const N: usize> Water<N> {
                 self.least[cell] = cavitation.pressure - weight * depth * lattice.height;
             }
         }
-        self.freeze(bed, touches, &looseness, images);
+        self.fields.lost = Shared::new(vec![0.0; bed.id.len()]);
+        self.freeze(bed, &places, &weights, images);
+        self.drift_to(bed);
+        if let Flow::Open(open) = &mut self.flow {
+            let grains = bed.position.iter().take(bed.id.len());
+            let grains = grains.map(|&row| (in_cells(&self.lattice, row.xyz()), volume(row)));
+            open.weigh(share::<N>(&self.lattice, grains), self.density)?;
+        }
         Ok(())
     }
 
-    /// What faces weigh with these grains; `looseness` is the part of each that does not count.
+    /// What faces weigh with these grains.
     fn freeze(
         &mut self,
         bed: &dem::Bed,
-        touches: Vec<Touch<N>>,
-        looseness: &[f64],
+        places: &[Place],
+        weights: &[Weight],
         images: Vec<[f64; 2]>,
     ) {
+        let mut exchange = std::mem::take(&mut self.exchange);
         let lattice = &self.lattice;
-        // ν T of each grain, were it quite loose.
-        let mut paces = Vec::with_capacity(touches.len());
-        let loose = looseness.iter().enumerate().map(|(k, looseness)| {
-            let at = place(lattice, bed.position[k].xyz());
-            let (cell, _) = middle(lattice, at);
-            let [i, j] = [0, 1].map(|axis| cell[axis].rem_euclid(lattice.cells[axis] as i64));
-            let at = lattice.cell([i as usize, j as usize, cell[2] as usize]);
+        let flux = self.is_open().then(|| self.flux());
+        // γ times ν T of each grain, were it quite loose.
+        let mut fast = vec![Row::ZERO; exchange.slots.len()];
+        for (k, (place, weight)) in places.iter().zip(weights).enumerate() {
+            let at = lattice.cell(place.cell);
             let solid = self.solid[at] / lattice.volume();
             let porosity = 1.0 - solid;
-            let resistance = self.resistance(porosity, [0.0; 3]);
-            let drag = porosity * porosity * resistance * volume(bed.position[k]) / solid;
-            let drag = DRAG_EVERY as f64 * drag;
-            paces.push(drag * self.step / bed.mass[k]);
-            Loose {
-                drag: looseness * drag,
-                grip: [0.0; 4],
-            }
-        });
-        let loose = loose.collect();
-        let mut exchange = Exchange::new(lattice, touches, loose);
-        self.fields.fit(&exchange, lattice);
+            let flux = flux.as_ref().map(|flux| flux[lattice.cell_of_lbm(at)]);
+            let resistance = self.resistance(porosity, flux.unwrap_or_default());
+            let quite = porosity * porosity * resistance * weight.volume / solid;
+            let quite = DRAG_EVERY as f64 * quite;
+            let drag = weight.loose * quite;
+            let (slot, lane) = exchange.at[k];
+            let (slot, lane) = (slot as usize, lane as usize);
+            exchange.counts[slot].0[lane] = weight.counts * weight.volume;
+            exchange.lift[slot].0[lane] = self.lift[k];
+            exchange.drag[slot].0[lane] = drag;
+            fast[slot].0[lane] = drag * (quite * self.step / bed.mass[k]);
+            let pace = 0.5 * self.step / bed.mass[k];
+            let free = match bed.constraint[k].horizontal {
+                Horizontal::Free => pace,
+                Horizontal::Held | Horizontal::Driven => 0.0,
+            };
+            exchange.pace.push(Row([free, free, pace, 0.0]));
+        }
         let pass = Pass {
             lattice,
+            kernels: &self.kernels,
             exchange: &exchange,
             frozen: &self.frozen,
             fields: &self.fields,
             walls: self.walls,
         };
         // Sums with the very weights of the steps to come.
-        let [mut inverse, mut loose, fast] = pass.sums_of([
-            &|grain| exchange.touches[grain].volume,
-            &|grain| exchange.loose[grain].drag,
-            &|grain| exchange.loose[grain].drag * paces[grain],
-        ]);
+        let [mut inverse, mut loose, fast] =
+            pass.sums_of([&exchange.counts, &exchange.drag, &fast]);
         let mut ease = vec![Row::ZERO; lattice.count()];
         for cell in 0..lattice.count() {
             for lane in 0..3 {
@@ -139,37 +171,39 @@ impl<const N: usize> Water<N> {
             loose,
             walls,
         };
-        let grips = Pass {
+        let mut grip = std::mem::take(&mut exchange.grip);
+        Pass {
             lattice,
+            kernels: &self.kernels,
             exchange: &exchange,
             frozen: &self.frozen,
             fields: &self.fields,
             walls: self.walls,
         }
-        .gathered(&self.frozen.ease);
-        for (loose, grip) in exchange.loose.iter_mut().zip(grips) {
-            loose.grip = grip;
-        }
+        .found(&self.frozen.ease, &mut grip);
+        exchange.grip = grip;
         self.exchange = exchange;
     }
 
     /// Weights, porosity and permeability anew; contents stay.
     pub(super) fn renew(&mut self, bed: &dem::Bed) -> Result<(), Error> {
         self.weigh(bed)?;
+        if self.is_open() {
+            return Ok(());
+        }
         let flux = match self.model.resistance.nonlinear() {
-            true => self.fluid.snapshot().flux,
+            true => self.flux(),
             false => vec![[0.0; 3]; self.lattice.count()],
         };
-        let height = self.lattice.height;
-        let kept = self
-            .fluid
-            .set_thickness(height)
-            .and_then(|()| self.fluid.set_bed(self.bed_of_lbm(&flux)));
-        if kept.is_err() {
+        let pores = self.bed_of_lbm(&flux);
+        let Flow::Lattice(solver) = &mut self.flow else {
+            return Ok(());
+        };
+        let kept = solver.set_thickness(self.lattice.height);
+        if kept.and_then(|()| solver.set_bed(pores)).is_err() {
             // The bed has changed so much that this lattice does not fit it any more.
-            let flux = self.fluid.snapshot().flux;
-            let between = self.fluid.time();
-            self.lay(between, &flux)?;
+            let (between, flux) = (solver.time(), solver.snapshot().flux);
+            self.lay(bed, between, Some(&flux))?;
             self.events.relaid += 1;
         }
         Ok(())
@@ -184,66 +218,66 @@ pub(super) fn span(lattice: &mut Lattice, walls: [usize; 2], bed: &dem::Bed) {
 }
 
 /// Volume of a grain from its row [m³].
-pub(super) fn volume(row: Row) -> f64 {
+pub(crate) fn volume(row: Row) -> f64 {
     4.0 / 3.0 * std::f64::consts::PI * row.w().powi(3)
 }
 
 /// Place of a grain in cells: from the origin along x and y, from the bottom along z.
-fn place(lattice: &Lattice, at: DVec3) -> [f64; 3] {
+fn in_cells(lattice: &Lattice, at: DVec3) -> [f64; 3] {
     let z = (at.z - lattice.bottom) / lattice.height;
     [at.x / lattice.spacing, at.y / lattice.spacing, z]
 }
 
-/// Call `each` with every cell that a grain reaches, that of its lower face along z with the wall
-/// behind which it lies if it does, and its shares of both.
-fn visit<const N: usize>(
-    lattice: &Lattice,
-    at: [f64; 3],
-    mut each: impl FnMut(usize, f64, (usize, Option<usize>), f64),
-) {
-    let (cell, [x, y, z]) = middle(lattice, at);
-    let (across, along) = (shares::<N>(x).0, shares::<N>(y).0);
-    let (cells, faces) = shares::<N>(z);
-    let m = half_width(N) as i64;
-    let [nx, ny, nz] = lattice.cells;
+/// Call `each` with the first cell of every column that a grain reaches, and its share of the column.
+#[inline(always)]
+fn columns<const N: usize>(lattice: &Lattice, place: Place, mut each: impl FnMut(usize, f64)) {
+    let [x, y] = [0, 1].map(|axis| shares::<N>(place.within[axis]).0);
+    let near = |axis: usize, k: usize| {
+        let at = (place.cell[axis] + k) as i64 - half_width(N) as i64;
+        lattice.wrapped(axis, at)
+    };
+    let mut beside = [0; N];
+    for j in 0..N {
+        beside[j] = lattice.cell([0, near(1, j), 0]);
+    }
     for i in 0..N {
-        let plane = (cell[0] + i as i64 - m).rem_euclid(nx as i64) as usize;
+        let plane = lattice.cell([near(0, i), 0, 0]);
         for j in 0..N {
-            let column = (cell[1] + j as i64 - m).rem_euclid(ny as i64) as usize;
-            let first = lattice.cell([plane, column, 0]);
-            let share = across[i] * along[j];
-            for k in 0..N {
-                let up = cell[2] + k as i64 - m;
-                let (face, behind) = folded_face(up, nz);
-                let at = first + folded_cell(up, nz);
-                each(
-                    at,
-                    share * cells[k],
-                    (first + face, behind),
-                    share * faces[k],
-                );
-            }
+            each(plane + beside[j], x[i] * y[j]);
         }
     }
 }
 
 /// Add a grain's volume to the cells.
-fn deposit<const N: usize>(lattice: &Lattice, at: [f64; 3], volume: f64, solid: &mut [f64]) {
-    visit::<N>(lattice, at, |cell, share, _, _| {
-        solid[cell] += volume * share
+fn deposit<const N: usize>(lattice: &Lattice, place: Place, volume: f64, solid: &mut [f64]) {
+    let shares = shares::<N>(place.within[2]).0;
+    let mut up = [0; N];
+    for k in 0..N {
+        let at = (place.cell[2] + k) as i64 - half_width(N) as i64;
+        up[k] = folded_cell(at, lattice.cells[2]);
+    }
+    columns::<N>(lattice, place, |first, share| {
+        for k in 0..N {
+            solid[first + up[k]] += volume * share * shares[k];
+        }
     });
 }
 
 /// Add twice the weights of a grain's images to the faces of normal z between the walls.
 fn add_images<const N: usize>(
     lattice: &Lattice,
-    at: [f64; 3],
+    place: Place,
     volume: f64,
     images: &mut [[f64; 2]],
 ) {
-    visit::<N>(lattice, at, |_, _, (face, behind), share| {
-        if let Some(wall) = behind {
-            images[face][wall] += 2.0 * volume * share;
+    let shares = shares::<N>(place.within[2]).1;
+    for k in 0..N {
+        let at = (place.cell[2] + k) as i64 - half_width(N) as i64;
+        if let (face, Some(wall)) = folded_face(at, lattice.cells[2]) {
+            let twice = 2.0 * volume * shares[k];
+            columns::<N>(lattice, place, |first, share| {
+                images[first + face][wall] += twice * share;
+            });
         }
-    });
+    }
 }

@@ -10,8 +10,12 @@ use lbm::Side;
 
 /// The bed, its grains thrown about with this speed [m/s].
 pub fn shaken(speed: f64) -> State {
+    shake(pressed(), speed)
+}
+
+/// A bed, its grains thrown about with this speed [m/s].
+pub fn shake(mut state: State, speed: f64) -> State {
     let mut random = random(7);
-    let mut state = pressed();
     for velocity in &mut state.grains.velocity {
         let throw = [random(), random(), random()].map(|x| 2.0 * x - 1.0);
         *velocity = speed * DVec3::from(throw);

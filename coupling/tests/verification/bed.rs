@@ -97,10 +97,12 @@ pub fn random(seed: u64) -> impl FnMut() -> f64 {
 /// A thousand grains that carry the wall, at rest.
 pub fn pressed() -> State {
     static BED: OnceLock<State> = OnceLock::new();
-    BED.get_or_init(|| press(1000, 1)).clone()
+    BED.get_or_init(|| pressed_from(1)).clone()
 }
 
-fn press(count: usize, seed: u64) -> State {
+/// The same of other grains at other places.
+pub fn pressed_from(seed: u64) -> State {
+    let count: usize = 1000;
     let mut random = random(seed);
     let across = 8;
     let spacing = SIDE / across as f64;

@@ -13,11 +13,19 @@ use std::sync::OnceLock;
 
 pub const LOAD: f64 = 1e4;
 
-/// The bed with grains of k_n = 1e7 N/m and the stiffness of its dry skeleton [Pa].
-fn soft() -> (dem::Model, State, f64) {
-    static M: OnceLock<f64> = OnceLock::new();
-    let (model, state) = (model(law(), STRESS), pressed());
-    let m = *M.get_or_init(|| skeleton_stiffness(&model, &state, LOAD, 0.04).unwrap());
+/// Description, state, and the stiffness of the dry skeleton [Pa].
+pub type Bed = (dem::Model, State, f64);
+
+/// The bed with grains of k_n = 1e7 N/m.
+fn soft() -> Bed {
+    static BED: OnceLock<Bed> = OnceLock::new();
+    BED.get_or_init(|| soft_from(1)).clone()
+}
+
+/// The same from another seed.
+pub fn soft_from(seed: u64) -> Bed {
+    let (model, state) = (model(law(), STRESS), pressed_from(seed));
+    let m = skeleton_stiffness(&model, &state, LOAD, 0.04).unwrap();
     (model, state, m)
 }
 
@@ -25,7 +33,7 @@ fn soft() -> (dem::Model, State, f64) {
 /// the load of the test twice before, so that its stiffness is one number: it varies by 0.5 %
 /// with load and time. A virgin bed yields: 8.1e9 Pa where 10 kPa come at once, 9.3e9 where they
 /// come slowly, and Terzaghi's pressure at T = 0.4 with the one is 15 % above that with the other.
-fn stiff() -> (dem::Model, State, f64) {
+pub fn stiff_from(seed: u64) -> Bed {
     let mut model = model(law(), STRESS);
     let ContactLaw::Linear(law) = &mut model.law else {
         unreachable!("the law is linear");
@@ -37,7 +45,7 @@ fn stiff() -> (dem::Model, State, f64) {
         sliding.damping *= 10.0;
     }
     model.step *= 0.1;
-    let mut state = pressed();
+    let mut state = pressed_from(seed);
     state.contacts.clear();
     // Pressed anew, then loaded by twice as much as later, and unloaded: what slides has slid.
     let sudden = [0.0, 2.0 * LOAD, 0.0, 2.0 * LOAD, 0.0];
@@ -62,7 +70,7 @@ fn stiff() -> (dem::Model, State, f64) {
 }
 
 /// Terzaghi's pressure over that at first, at `depth` below the drained top, both over H and T.
-fn terzaghi(depth: f64, time: f64) -> f64 {
+pub fn terzaghi(depth: f64, time: f64) -> f64 {
     let terms = (0..200).map(|k| {
         let m = PI * (k as f64 + 0.5);
         2.0 / m * (m * depth).sin() * (-m * m * time).exp()
@@ -71,10 +79,7 @@ fn terzaghi(depth: f64, time: f64) -> f64 {
 }
 
 /// Errors of the pressure in the lowest cells at T = 0.05, 0.1, 0.2, 0.4.
-pub fn errors<const N: usize>(
-    (model, state, m): (dem::Model, State, f64),
-    mut water: Model,
-) -> [f64; 4] {
+pub fn errors<const N: usize>((model, state, m): Bed, mut water: Model) -> [f64; 4] {
     water.stiffness = Some(m);
     let step_size = model.step;
     let loaded = with_load(&model, |load| StressLoad {
@@ -146,20 +151,24 @@ fn a_loaded_bed_consolidates_as_terzaghi_says_in_cells_of_one_diameter() {
     judge(errors::<5>(soft(), water));
 }
 
-/// Where water is as soft as the skeleton, loosely held grains count: on this very bed the error at
-/// T = 0.4 is -29 % with f = 0.1, -7 % with 0.5, the default, and -1 % with 2.
+/// Where water is as soft as the skeleton, loosely held grains count: of three beds the mean error
+/// at T = 0.4 is -1 % with f = 1, the default, and -4 % with 0.5. Each bed departs from the mean by
+/// up to 3 %, whatever f.
 #[test]
-#[ignore = "half a minute: a stiff bed is pressed in small steps"]
-fn a_bed_of_stiff_grains_consolidates_as_terzaghi_says() {
-    let bed = stiff();
-    let error = |loose: f64| {
+#[ignore = "two minutes: stiff beds are pressed in small steps"]
+fn beds_of_stiff_grains_consolidate_as_terzaghi_says() {
+    let beds = [1, 2, 3].map(stiff_from);
+    let mean = |loose: f64| {
         let mut water = water(1e-12);
         water.loose = loose;
-        errors::<3>(bed.clone(), water)
+        let found = beds
+            .each_ref()
+            .map(|bed| errors::<3>(bed.clone(), water.clone()));
+        [0, 1, 2, 3].map(|time| found.iter().map(|errors| errors[time] / 3.0).sum::<f64>())
     };
-    judge(error(2.0));
-    let leaks = error(0.5);
-    assert!(leaks[2].abs() < 0.05 && leaks[3].abs() < 0.1, "{leaks:?}");
+    judge(mean(1.0));
+    let leaks = mean(0.5);
+    assert!(leaks[3] < -0.03, "{leaks:?}");
 }
 
 /// A sealed bed: the water takes Skempton's share B = 1/(1 + S M) of a load at once.

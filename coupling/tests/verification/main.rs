@@ -3,8 +3,14 @@
 mod balance;
 mod bed;
 mod consolidation;
+mod dilation;
+mod energy;
+mod fluidisation;
+mod loose;
 mod refusals;
 mod seepage;
+mod settling;
 mod shear;
 mod stability;
+mod study;
 mod tampered;

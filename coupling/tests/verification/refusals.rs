@@ -33,6 +33,34 @@ fn an_interval_that_invents_strength_is_refused_and_a_long_one_warned_of() {
     );
 }
 
+/// S M = 1.6 of stiff grains and real water: ten times softer, it takes 6 % of a load, not 38 %.
+#[test]
+fn water_softened_until_it_changes_the_answer_is_refused_and_told_before() {
+    let softened = |times: f64, stiffness: f64| {
+        let mut water = water(1e-12);
+        water.fluid.compressibility = times * lbm::Fluid::COLD_WATER.compressibility;
+        water.stiffness = Some(stiffness);
+        water
+    };
+    let said = refusal(model(law(), STRESS), softened(10.0, 8e9));
+    assert!(
+        said.contains("10.0 times softer") && said.contains("5.8 % of a load"),
+        "{said}"
+    );
+    // Soft grains bear it longer.
+    for (times, parts) in [(1.0, 0), (3.0, 0), (10.0, 1)] {
+        let water = softened(times, 2e8);
+        let bed = Coupled::<3>::new(model(law(), STRESS), pressed(), water, None, 1).unwrap();
+        let warnings = bed.report().warnings();
+        assert_eq!(warnings.len(), parts, "{times}: {warnings:?}");
+        assert!(warnings.iter().all(|w| w.contains("at once instead of 96")));
+    }
+    // Where nothing is known of the skeleton, nothing can be said.
+    let mut unknown = softened(10.0, 8e9);
+    unknown.stiffness = None;
+    assert!(Coupled::<3>::new(model(law(), STRESS), pressed(), unknown, None, 1).is_ok());
+}
+
 #[test]
 fn boxes_and_beds_that_cannot_hold_the_water_are_refused() {
     let cases: [(&str, Spoil); 6] = [

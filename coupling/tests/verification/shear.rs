@@ -5,9 +5,8 @@ use coupling::Coupled;
 use dem::{Drive, Horizontal, Solver, State};
 use lbm::Side;
 
-/// The bed with its lowest grains held and its highest driven at `speed` [m/s], sheared linearly.
-fn sheared(speed: f64) -> (dem::Model, State) {
-    let mut state = pressed();
+/// A bed with its lowest grains held and its highest driven at `speed` [m/s], sheared linearly.
+pub fn sheared(mut state: State, speed: f64) -> (dem::Model, State) {
     let top = -state.walls[1].offset;
     let grains = &mut state.grains;
     for k in 0..grains.len() {
@@ -28,7 +27,7 @@ fn sheared(speed: f64) -> (dem::Model, State) {
 
 #[test]
 fn undrained_shear_keeps_the_volume_and_hardens() {
-    let (model, state) = sheared(0.17);
+    let (model, state) = sheared(pressed(), 0.17);
     let height = -state.walls[1].offset;
     let steps = 4000;
     let mut dry = Solver::new(model.clone(), state.clone(), 1).unwrap();

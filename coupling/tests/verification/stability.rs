@@ -3,7 +3,7 @@
 use crate::balance::shaken;
 use crate::bed::*;
 use crate::tampered::{Spoilt, Tampered};
-use coupling::{Coupled, Model, Water};
+use coupling::{Coupled, Ledger, Model, Water};
 use dem::contact::Linear;
 use dem::{Solver, State, WallMotion};
 use lbm::Side;
@@ -97,7 +97,7 @@ fn a_gather_of_its_own_pumps_energy() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let run = |threads: usize| -> (State, Vec<f64>) {
+    let run = |threads: usize| -> (State, Vec<f64>, Ledger) {
         let water = water(1e-12);
         let state = shaken(0.5);
         let mut bed = Coupled::<3>::new(model(law(), STRESS), state, water, None, threads).unwrap();
@@ -106,6 +106,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         (
             bed.grains().snapshot().state,
             bed.water().pressure().to_vec(),
+            bed.ledger(),
         )
     };
     let one = run(1);

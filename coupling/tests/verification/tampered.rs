@@ -41,6 +41,12 @@ impl Companion for Tampered {
     fn follow(&self, moved: &Moved, threads: &Threads) {
         self.water.follow(moved, threads);
     }
+    fn wants_to_be_alone(&self, step: u64) -> bool {
+        self.water.wants_to_be_alone(step)
+    }
+    fn alone(&mut self, moved: &Moved) {
+        self.water.alone(moved);
+    }
     fn due(&self, step: u64) -> bool {
         self.water.due(step)
     }

@@ -1,5 +1,6 @@
 //! All arrays of a solver on the device, under the names that the kernels know.
 
+use super::companion::Companion;
 use super::control::Control;
 use super::fixed::Place;
 use super::numbers::Numbers;
@@ -21,6 +22,8 @@ pub(super) struct Parts {
     pub full_walls: bool,
     /// Is the driven layer driven by a shear stress?
     pub shear_stress: bool,
+    /// Does something go along, with so many vectors a grain?
+    pub companion: Option<usize>,
 }
 
 pub(super) struct Arrays {
@@ -46,6 +49,7 @@ pub(super) struct Arrays {
     pub outside: Option<(Array<[f32; 4]>, Array<u32>)>,
     /// What velocities in f32 do not hold.
     pub remains: Array<[i32; 4]>,
+    pub companion: Option<Companion>,
 }
 
 /// Arrays with one element for each entry of the neighbour lists.
@@ -187,6 +191,10 @@ impl Arrays {
             },
             outside: None,
             remains: device.array("remains", n)?,
+            companion: match parts.companion {
+                Some(width) => Some(Companion::new(device, n, parts.walls, width)?),
+                None => None,
+            },
         })
     }
 
@@ -229,6 +237,9 @@ impl Arrays {
             named.push(("outside", outside));
             named.push(("changed", changed));
         }
+        if let Some(companion) = &self.companion {
+            named.extend(companion.named());
+        }
         named
     }
 
@@ -251,6 +262,7 @@ impl Arrays {
         for array in each.into_iter().flatten().filter(|_| walls > 0) {
             rows.push((array, walls));
         }
+        rows.extend(self.companion_rows());
         rows
     }
 

@@ -26,7 +26,8 @@ impl Look {
             WallMotion::Held | WallMotion::Velocity(_) => 0.0,
             WallMotion::Stress(load) => {
                 let pushed = load.stress(self.time(solver)) * load.area;
-                (pushed - force - load.damping * velocity) / load.mass
+                let together = self.companion_force(solver, self.control.base.into(), k);
+                (pushed - force - together - load.damping * velocity) / load.mass
             }
         }
     }
@@ -69,6 +70,8 @@ impl Look {
                 let time = solver.start.time + last as f64 * dt;
                 let pushed = load.stress(time) * load.area;
                 let force = self.force(solver, slot + k);
+                let together = self.companion_force(solver, last, k);
+                let force = force + together;
                 velocity += kick * (pushed - force - load.damping * velocity) / load.mass;
             }
             (

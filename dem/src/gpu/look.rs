@@ -10,9 +10,11 @@ use crate::Error;
 use shaders::{Array, Bindable, Device};
 
 /// What the device holds at one instant.
+#[derive(Default)]
 pub(super) struct Look {
     pub control: Control,
     pub sums: Vec<[u32; 2]>,
+    pub reliefs: Vec<[f32; 2]>,
     pub bodies: Vec<Body>,
     pub places: Vec<Place>,
     pub motions: Vec<Motion>,
@@ -113,6 +115,10 @@ impl Solver {
         let mut reading = self.device.reading();
         let control = reading.add(&self.arrays.control, 0..1);
         let sums = reading.add(&self.arrays.sums, 0..slots.len());
+        let reliefs = self.arrays.companion.as_ref().map(|companion| {
+            let all = 0..companion.reliefs.len();
+            reading.add(&companion.reliefs, all)
+        });
         let bodies = reading.add(&self.arrays.bodies, 0..self.arrays.bodies.len());
         let places = reading.add(&self.arrays.places, half..half + n);
         let motions = reading.add(&self.arrays.motions, half..half + n);
@@ -147,6 +153,7 @@ impl Solver {
         Ok(Look {
             control,
             sums: arrived.take(sums),
+            reliefs: reliefs.map_or_else(Vec::new, |part| arrived.take(part)),
             bodies: arrived.take(bodies),
             places: arrived.take(places),
             motions: arrived.take(motions),

@@ -45,7 +45,7 @@ impl Memory {
     /// # Errors
     /// [`Error::Invalid`] where the numbers of the GPU cannot hold the scene.
     pub fn of(model: &Model, state: &State) -> Result<Self, Error> {
-        let numbers = Numbers::of(model, state, 1)?;
+        let numbers = Numbers::of(model, state, 1, None)?;
         let parts = &numbers.parts;
         let (grains, walls) = (parts.grains as u64, parts.walls as u64);
         let (slides, turns, ledger) = (parts.slides, parts.turns, parts.ledger);

@@ -6,6 +6,7 @@
 
 mod arrays;
 mod bodies;
+pub mod companion;
 pub mod control;
 pub mod fixed;
 pub mod law;

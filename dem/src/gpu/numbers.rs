@@ -58,11 +58,17 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
-    /// Those of `model` and `state` with `lanes` threads a grain.
+    /// Those of `model` and `state` with `lanes` threads a grain, and a companion that keeps so many
+    /// vectors a grain, if there is one.
     ///
     /// # Errors
     /// [`Error::Invalid`] where the numbers of the GPU cannot hold the scene.
-    pub fn of(model: &Model, state: &State, lanes: u32) -> Result<Self, Error> {
+    pub fn of(
+        model: &Model,
+        state: &State,
+        lanes: u32,
+        companion: Option<usize>,
+    ) -> Result<Self, Error> {
         if !LANES.contains(&lanes) {
             let what = format!("{lanes} threads a grain; it may be one of {LANES:?}");
             return Err(Error::Invalid(what));
@@ -84,6 +90,7 @@ impl Numbers {
             ledger: model.ledger,
             full_walls: full && model.law.slides(),
             shear_stress: matches!(model.drive, Some(Drive::ShearStress(_))),
+            companion,
         };
         Ok(Self {
             grid: Grid::new(&model.domain, extent(model, state), reach)?,
@@ -92,6 +99,7 @@ impl Numbers {
             slots: Slots {
                 walls: parts.walls,
                 spread: spread(n),
+                companion: companion.is_some(),
             },
             driven_mass: (0..n).filter(driven).map(|k| grains.mass[k]).sum(),
             lanes,
@@ -136,6 +144,7 @@ pub(super) fn flags(model: &Model, parts: &Parts, lanes: u32) -> Flags {
         .set_if("SHEAR_STRESS", parts.shear_stress)
         .set_if("APART", parts.shear_stress)
         .set_if("SHARED_GRAINS", lanes > 1)
+        .set_if("COMPANION", parts.companion.is_some())
         .number("LANES", lanes)
         .number("PARTIALS", if lanes > 1 { THREADS } else { 1 })
         .number("SPREAD", spread(parts.grains) as u32)

@@ -102,6 +102,8 @@ pub(super) struct Slots {
     pub walls: usize,
     /// Places of the losses.
     pub spread: usize,
+    /// Does something go along with the grains?
+    pub companion: bool,
 }
 
 impl Slots {
@@ -140,8 +142,13 @@ impl Slots {
         self.losses() + 4 * self.spread
     }
 
+    /// Force of a companion on the first wall in the slot of `step`.
+    pub fn companion(self, step: u64) -> usize {
+        self.losses_read() + 4 + (step % 3) as usize * self.walls
+    }
+
     /// All of them.
     pub fn len(self) -> usize {
-        self.losses_read() + 4
+        self.companion(0) + if self.companion { 3 * self.walls } else { 0 }
     }
 }

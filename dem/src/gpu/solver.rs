@@ -4,11 +4,11 @@ use super::arrays::Arrays;
 use super::control::Control;
 use super::numbers::{self, Numbers};
 use super::search::{self, Search};
-use super::steps::{self, Step, bind_search};
+use super::steps::{self, Dispatches, Step, bind_search};
 use super::sums::Totals;
 use crate::{Error, Ledger, Model, Outside, State};
 use glam::DVec3;
-use shaders::{Bound, Device, Flags, Kernel};
+use shaders::{Device, Flags, Kernel};
 
 /// Grains in motion on a device.
 pub struct Solver {
@@ -29,7 +29,7 @@ pub struct Solver {
     /// Forces and torques from outside, by identity, while there are any.
     pub(super) outside: Option<Vec<[DVec3; 2]>>,
     /// The dispatches of a step.
-    pub(super) dispatches: Vec<Bound>,
+    pub(super) dispatches: Option<Dispatches>,
     /// As last heard of.
     pub(super) control: Control,
     /// Forces of the start on the walls, the held and the driven layer [N].
@@ -65,12 +65,22 @@ impl Solver {
     pub fn with_lanes(
         device: &Device,
         lanes: u32,
+        model: Model,
+        state: State,
+    ) -> Result<Self, Error> {
+        Self::build(device, lanes, None, model, state)
+    }
+
+    pub(super) fn build(
+        device: &Device,
+        lanes: u32,
+        companion: Option<usize>,
         mut model: Model,
         mut state: State,
     ) -> Result<Self, Error> {
         crate::check::check(&model, &state)?;
         let drive = crate::start::constrain(&model, &mut state);
-        let numbers = Numbers::of(&model, &state, lanes)?;
+        let numbers = Numbers::of(&model, &state, lanes, companion)?;
         model.domain = numbers.grid.domain(&model.domain);
         let arrays = Arrays::new(device, &numbers, &model, &state, drive)?;
         let histories = arrays.entries.histories().count() > 0;
@@ -95,7 +105,7 @@ impl Solver {
             step,
             measure,
             outside: None,
-            dispatches: Vec::new(),
+            dispatches: None,
             control: Control::default(),
             forces_at_start: Vec::new(),
             totals: Totals::new(numbers.slots),

@@ -5,7 +5,7 @@ use super::control::{CROWDED, Control, FULL, GONE, UNSTABLE};
 use super::search::{self, Search};
 use super::solver::Solver;
 use crate::Error;
-use shaders::{Device, Flags, Kernel, Recording, compose, groups};
+use shaders::{Bound, Device, Flags, Kernel, Recording, compose, groups};
 use std::collections::VecDeque;
 
 /// Steps between two looks at the neighbour lists: a look costs as much as a few steps, and
@@ -26,6 +26,15 @@ pub(super) const THREADS: u32 = 64;
 pub(super) struct Step {
     whole: Kernel,
     motion: Option<Kernel>,
+    /// The whole that leaves how hard grains are pressed, for a companion.
+    loads: Option<Kernel>,
+}
+
+/// The same with their arrays.
+pub(super) struct Dispatches {
+    whole: Bound,
+    motion: Option<Bound>,
+    loads: Option<Bound>,
 }
 
 impl Step {
@@ -35,6 +44,13 @@ impl Step {
             whole: device.kernel(&module, "time_step")?,
             motion: match flags.has("SHEAR_STRESS") {
                 true => Some(device.kernel(&module, "move_all")?),
+                false => None,
+            },
+            loads: match flags.has("COMPANION") {
+                true => {
+                    let module = compose("dem/step.wgsl", &flags.clone().set("LOADS"))?;
+                    Some(device.kernel(&module, "time_step")?)
+                }
                 false => None,
             },
         })
@@ -57,10 +73,13 @@ impl Solver {
             self.compiled = flags;
         }
         let named = self.arrays.named();
-        let kernels = [Some(&self.step.whole), self.step.motion.as_ref()];
-        let bound = kernels.into_iter().flatten();
-        let bound = bound.map(|kernel| kernel.bind(&self.device, &named));
-        self.dispatches = bound.collect::<Result<_, _>>()?;
+        let bind = |kernel: &Kernel| kernel.bind(&self.device, &named);
+        let some = |kernel: &Option<Kernel>| kernel.as_ref().map(bind).transpose();
+        self.dispatches = Some(Dispatches {
+            whole: bind(&self.step.whole)?,
+            motion: some(&self.step.motion)?,
+            loads: some(&self.step.loads)?,
+        });
         Ok(())
     }
 
@@ -71,12 +90,18 @@ impl Solver {
             let steps = left.min(TAKEN_EVERY);
             self.go(steps)?;
             left -= steps;
-            self.since_taken += steps;
-            if self.since_taken >= TAKEN_EVERY {
-                self.take_sums()?;
-            }
+            self.made(steps)?;
         }
         self.find_neighbours()
+    }
+
+    /// Take the sums of `steps` more steps off the device where it is time.
+    pub(super) fn made(&mut self, steps: u64) -> Result<(), Error> {
+        self.since_taken += steps;
+        if self.since_taken >= TAKEN_EVERY {
+            self.take_sums()?;
+        }
+        Ok(())
     }
 
     /// Search, if the lists are no longer good for the places of now: the search that the next
@@ -107,10 +132,7 @@ impl Solver {
 
     fn go(&mut self, steps: u64) -> Result<(), Error> {
         let until = u64::from(self.control.base) + steps;
-        let end = u32::try_from(until).map_err(|_| Error::Unstable {
-            step: u64::from(self.control.base),
-            what: "the GPU counts 4e9 steps in one phase; divide the phase".into(),
-        })?;
+        let end = self.count(until)?;
         self.write_end(end);
         let mut pending = VecDeque::new();
         while self.control.base < end {
@@ -138,6 +160,14 @@ impl Solver {
         Ok(())
     }
 
+    /// The number of a step as the device counts it.
+    pub(super) fn count(&self, step: u64) -> Result<u32, Error> {
+        u32::try_from(step).map_err(|_| Error::Unstable {
+            step: u64::from(self.control.base),
+            what: "the GPU counts 4e9 steps in one phase; divide the phase".into(),
+        })
+    }
+
     pub(super) fn write_end(&self, end: u32) {
         // The first word, `end`, is the host's; the others are the device's.
         self.device.write(&self.arrays.control.words(), 0, &[end]);
@@ -155,7 +185,7 @@ impl Solver {
                     std::mem::replace(&mut recording, self.device.record()).submit()?;
                     recorded = 0;
                 }
-                self.record_step(&mut recording, tick);
+                self.record_step(&mut recording, tick, false);
                 recorded += 1;
             }
             self.search.settle(&mut recording);
@@ -163,12 +193,16 @@ impl Solver {
         Ok(recording.submit()?)
     }
 
-    /// The step `tick` of a group.
-    pub(super) fn record_step(&self, recording: &mut Recording, tick: u32) {
+    /// The step `tick` of a group; where `loads`, it leaves how hard grains are pressed.
+    pub(super) fn record_step(&self, recording: &mut Recording, tick: u32, loads: bool) {
         let n = self.arrays.parts.grains;
         let shared = groups(n * self.numbers.lanes as usize, THREADS);
-        recording.dispatch_at(&self.dispatches[0], tick, shared);
-        if let Some(motion) = self.dispatches.get(1) {
+        let Some(step) = &self.dispatches else {
+            return;
+        };
+        let whole = step.loads.as_ref().filter(|_| loads);
+        recording.dispatch_at(whole.unwrap_or(&step.whole), tick, shared);
+        if let Some(motion) = &step.motion {
             recording.dispatch_at(motion, tick, groups(n, THREADS));
         }
     }

@@ -57,6 +57,16 @@ impl Look {
         solver.totals.units(slot, self.sums[slot]) * solver.numbers.units.work
     }
 
+    /// Force of a companion on wall `k` in `step`, as far as it moves it [N].
+    pub(super) fn companion_force(&self, solver: &Solver, step: u64, k: usize) -> f64 {
+        let slots = solver.numbers.slots;
+        let relief = (step % 3) as usize * slots.walls + k;
+        let Some(&[share, off]) = self.reliefs.get(relief) else {
+            return 0.0;
+        };
+        f64::from(share) * self.force(solver, slots.companion(step) + k) - f64::from(off)
+    }
+
     /// Forces of this instant: walls, held and driven layer [N].
     pub(super) fn forces_now(&self, solver: &Solver) -> Vec<f64> {
         let first = solver.numbers.slots.reading();
@@ -105,7 +115,11 @@ impl Look {
             ledger.dissipated_friction = lost(0);
             ledger.dissipated_viscosity = lost(1);
             ledger.dissipated_rolling = lost(2);
-            ledger.work_outside = lost(3);
+            // There is no force from outside where something goes along.
+            match solver.arrays.parts.companion {
+                Some(_) => ledger.work_companion = lost(3),
+                None => ledger.work_outside = lost(3),
+            }
             // Between the first force and this one, each drift takes half of the force before
             // it and half of the one after.
             let between = |k: usize, sum: f64| sum + 0.5 * (solver.forces_at_start[k] - now[k]);

@@ -85,6 +85,7 @@ fn scenes() -> Vec<(String, Flags)> {
                 ledger,
                 full_walls,
                 shear_stress,
+                companion: (bits & !1 == 0).then_some(1),
             };
             let lanes = if shared { 4 } else { 1 };
             let flags = flags(&model(law, ledger), &parts, lanes);
@@ -109,7 +110,8 @@ fn every_time_step_that_a_scene_can_ask_for_is_valid() {
         let variants = [
             flags.clone(),
             flags.clone().set("OUTSIDE"),
-            flags.set("READ").set("APART"),
+            flags.clone().set("READ").set("APART"),
+            flags.set("LOADS"),
         ];
         for flags in variants {
             let what = format!("{scene}, {flags:?}");

@@ -36,7 +36,7 @@ impl Solver {
             self.search.record(&mut recording);
             recording.section("steps");
             for tick in 0..GROUP as u32 {
-                self.record_step(&mut recording, tick);
+                self.record_step(&mut recording, tick, false);
             }
             recording.section("settle");
             self.search.settle(&mut recording);

@@ -1,5 +1,5 @@
-//! `esker bench speed`: how many grain-steps a second on a dense sheared bed, and how many cells of
-//! water.
+//! `esker bench speed`: how many grain-steps a second on a dense sheared bed, how many cells of
+//! water, and what water costs a bed.
 //!
 //! Every round takes each case once, so that a machine whose clock wanders is fair to all of
 //! them; medians and extremes over the rounds are reported.
@@ -13,6 +13,8 @@ mod lammps;
 mod numbers;
 mod packing;
 mod report;
+mod wet;
+mod wet_gpu;
 
 use crate::backend::{Backend, Machine, processor};
 use anyhow::{Result, bail, ensure};
@@ -37,6 +39,10 @@ pub struct SpeedArgs {
     /// Cells along each side of lattices of water, instead of grains or, with --grains, beside them
     #[arg(long, value_delimiter = ',', value_name = "N")]
     pub fluid: Vec<usize>,
+    /// Numbers of grains of beds with water, multiples of 1000: dry step, prediction and fluid step
+    /// apart; instead of dry beds or, with --grains, beside them
+    #[arg(long, value_delimiter = ',', value_name = "N")]
+    pub wet: Vec<usize>,
     /// Numbers of threads of the CPU (and of LAMMPS' ranks) [default: one for each core]
     #[arg(long, value_delimiter = ',', value_name = "N")]
     pub threads: Vec<usize>,
@@ -62,13 +68,14 @@ pub struct SpeedArgs {
 /// whose coordination number falls below 4 (no longer dense, so no measure of one), and
 /// files that cannot be written.
 pub fn speed(args: &SpeedArgs) -> Result<()> {
-    for &grains in &args.grains {
+    for &grains in args.grains.iter().chain(&args.wet) {
         packing::check_count(grains)?;
     }
     // Beds of all sizes are measured, also those that are too small for a GPU to pay.
     let machine = args.backend.choose(usize::MAX, 0)?.machine;
     let mut kept = Kept::new(args.json.clone());
-    let rows = match (&machine, args.fluid.is_empty() || !args.grains.is_empty()) {
+    let others = !args.fluid.is_empty() || !args.wet.is_empty();
+    let rows = match (&machine, !others || !args.grains.is_empty()) {
         (_, false) => Vec::new(),
         (Machine::Cpu { .. }, true) => on_cpu(args, &mut kept)?,
         (Machine::Gpu(device), true) => on_gpu(device, args, &mut kept)?,
@@ -80,6 +87,13 @@ pub fn speed(args: &SpeedArgs) -> Result<()> {
         args.rounds,
         &mut kept,
     )?;
+    for &grains in &args.wet {
+        packing::check_count(grains)?;
+        match &machine {
+            Machine::Cpu { .. } => wet::speed(grains, &threads(args)?, args.rounds, &mut kept)?,
+            Machine::Gpu(device) => wet_gpu::speed(device, grains, args.rounds, &mut kept)?,
+        }
+    }
     // Where sizes differ much, many small grains float in the holes between large ones.
     let dense = |row: &Row| row.case != Case::LogNormal.name();
     ensure!(

@@ -8,12 +8,14 @@ mod left_out;
 mod pores;
 mod run;
 mod scene;
+mod sweep;
 mod water;
 
 pub use check::{Check, check};
 pub use info::info;
 pub use run::{Run, run};
 pub use scene::SceneArgs;
+pub use sweep::{Sweep, sweep};
 
 use crate::{bed, ready, scene as scenes};
 use anyhow::{Context, Result};

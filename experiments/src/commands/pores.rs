@@ -1,6 +1,7 @@
 //! `esker check` of water between grains.
 
 use super::check::line;
+use super::cost::MIB;
 use crate::backend::Machine;
 use crate::engine::Engine;
 use crate::protocol::{self, Prepared};
@@ -59,8 +60,15 @@ pub fn report(scene: &Scene, machine: &Machine) -> Result<()> {
         protocol::prepare(scene, phase, scene.start.clone(), reference)?;
     let stiffness = water::stiffness(scene, phase, &model, &state, &scene.past)?;
     let engine = Engine::of_phase(scene, phase, machine, model, state, &scene.past, stiffness)?;
-    if let Engine::Wet(bed) = engine {
-        println!("{}", bed.report());
+    if let (Engine::Wet(_), Machine::Gpu(_)) = (&engine, machine) {
+        let mebibytes = engine.memory() as f64 / MIB;
+        line(
+            "memory of the GPU",
+            &format!("{mebibytes:.1} MiB with the water"),
+        );
+    }
+    if let Engine::Wet(bed) = &engine {
+        println!("{}", water::describe(engine.model(), &bed.report()?));
     }
     Ok(())
 }

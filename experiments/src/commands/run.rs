@@ -36,7 +36,24 @@ pub struct Run {
 }
 
 /// Exit status of a program that Ctrl-C ended, as shells know it.
-const INTERRUPTED: u8 = 130;
+pub(super) const INTERRUPTED: u8 = 130;
+
+/// What becomes true when the user, or the system, wants the program to end.
+///
+/// # Errors
+/// A system that does not tell.
+pub(super) fn on_interrupt() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = stop.clone();
+    let on_signal = move || {
+        // The second time the user means it.
+        if asked.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    };
+    ctrlc::set_handler(on_signal).context("cannot listen for Ctrl-C")?;
+    Ok(stop)
+}
 
 /// `esker run`
 ///
@@ -54,15 +71,7 @@ pub fn run(arguments: &Run) -> Result<ExitCode> {
         force: arguments.force,
         quiet: arguments.quiet,
     };
-    let stop = Arc::new(AtomicBool::new(false));
-    let asked = stop.clone();
-    let on_signal = move || {
-        // The second time the user means it.
-        if asked.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED.into());
-        }
-    };
-    ctrlc::set_handler(on_signal).context("cannot listen for Ctrl-C")?;
+    let stop = on_interrupt()?;
     match &scene {
         AnyScene::Grains(scene) => grains(scene, &options, &stop),
         AnyScene::Water(scene) => water(scene, &options, &stop),

@@ -2,6 +2,7 @@
 
 use crate::ready;
 use crate::scene::{AnyScene, Document};
+use crate::sweep::Source;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -29,6 +30,16 @@ impl SceneArgs {
     }
 
     fn document(&self) -> Result<(Document, String)> {
+        let (source, name) = self.source()?;
+        let document = Document::new(&source.name, &source.folder, &source.text, &source.sets);
+        Ok((document.map_err(counted)?, name))
+    }
+
+    /// The text of the scene, before it is read, with a short name for its results.
+    ///
+    /// # Errors
+    /// A scene that is not there.
+    pub fn source(&self) -> Result<(Source, String)> {
         let path = Path::new(&self.scene);
         let file = if path.is_dir() {
             path.join("scene.toml")
@@ -38,17 +49,25 @@ impl SceneArgs {
         if file.is_file() {
             let text = std::fs::read_to_string(&file)
                 .with_context(|| format!("cannot read {}", file.display()))?;
-            let folder = file.parent().unwrap_or(Path::new("."));
-            let document = Document::new(&file.display().to_string(), folder, &text, &self.set);
-            return Ok((document.map_err(counted)?, short_name(&file)));
+            let source = Source {
+                name: file.display().to_string(),
+                folder: file.parent().unwrap_or(Path::new(".")).into(),
+                text,
+                sets: self.set.clone(),
+            };
+            return Ok((source, short_name(&file)));
         }
         if path.is_dir() {
             bail!("{} holds no scene.toml", path.display());
         }
         let ready = ready::find(&self.scene).ok_or_else(|| anyhow!(no_such(&self.scene)))?;
-        let name = format!("{}/scene.toml", ready.name);
-        let document = Document::new(&name, &ready.folder(), ready.scene(), &self.set);
-        Ok((document.map_err(counted)?, ready.name.into()))
+        let source = Source {
+            name: format!("{}/scene.toml", ready.name),
+            folder: ready.folder(),
+            text: ready.scene().into(),
+            sets: self.set.clone(),
+        };
+        Ok((source, ready.name.into()))
     }
 }
 

@@ -3,7 +3,10 @@
 use super::pores::{self, SCALARS};
 use super::{FileKind, Frame};
 use anyhow::{Result, bail};
-use dem::output::{CONTACTS, Field, GRAINS, PROFILES, Reading, SERIES, Scalar, Storage, Variable};
+use dem::output::{
+    CONTACTS, Field, FieldReading, GRAINS, PROFILES, Reading, SERIES, Scalar, Storage, Variable,
+};
+use ndarray::{Array1, ArrayD};
 
 /// A scalar of time that the protocol knows and the grains do not.
 #[derive(Debug)]
@@ -89,25 +92,67 @@ impl Series {
     }
 }
 
+/// A variable of `profiles.nc`, from wherever it is read.
+#[derive(Clone, Copy, Debug)]
+pub enum Profile {
+    /// From the grains.
+    Grains(&'static Field),
+    /// From the water between them.
+    Water(&'static pores::Profile),
+}
+
+impl Profile {
+    /// How the file describes it.
+    pub fn variable(&self) -> &'static Variable {
+        match self {
+            Self::Grains(f) => &f.variable,
+            Self::Water(p) => &p.variable,
+        }
+    }
+
+    /// Its values in `frame`, in layers between these `edges` [m].
+    pub fn read(&self, frame: &Frame, edges: &[f64]) -> ArrayD<f64> {
+        match self {
+            Self::Grains(f) => (f.read)(&FieldReading {
+                model: &frame.model,
+                now: &frame.snapshot,
+                edges,
+            }),
+            Self::Water(p) => {
+                let dry = || vec![f64::NAN; edges.len() - 1];
+                let water = frame.water.as_ref();
+                let values = water.map_or_else(dry, |water| (p.read)(water, edges));
+                Array1::from_vec(values).into_dyn()
+            }
+        }
+    }
+}
+
+/// All variables of `profiles.nc`, of grains that are `wet` or dry.
+pub fn profiles(wet: bool) -> impl Iterator<Item = Profile> {
+    let water = pores::PROFILES.iter().filter(move |_| wet);
+    let grains = PROFILES.iter().map(Profile::Grains);
+    grains.chain(water.map(Profile::Water))
+}
+
 /// All variables of `series.nc` of dry grains; those of [`PROGRESS`] are always written.
 pub fn series() -> impl Iterator<Item = Series> {
     let protocol = PROGRESS.iter().chain(PROTOCOL).map(Series::Protocol);
     protocol.chain(SERIES.iter().map(Series::Grains))
 }
 
-/// The same with water between the grains. Its work is not in the ledger of theirs, whose
-/// residual is not one then.
+/// The same with water between the grains.
 pub fn wet_series() -> impl Iterator<Item = Series> {
-    let dry = series().filter(|series| series.variable().name != "energy_residual");
-    dry.chain(SCALARS.iter().map(Series::Water))
+    series().chain(SCALARS.iter().map(Series::Water))
 }
 
 /// Names of all variables of a file with water between the grains.
 pub fn wet_names(kind: FileKind) -> Vec<&'static str> {
     match kind {
         FileKind::Series => wet_series().map(|series| series.variable().name).collect(),
+        FileKind::Profiles => profiles(true).map(|p| p.variable().name).collect(),
         FileKind::Fluid => pores::FIELDS.iter().map(|f| f.variable.name).collect(),
-        _ => names(kind),
+        FileKind::Grains | FileKind::Contacts => names(kind),
     }
 }
 
@@ -116,7 +161,7 @@ pub fn names(kind: FileKind) -> Vec<&'static str> {
     let of = |fields: &[Field]| fields.iter().map(|field| field.variable.name).collect();
     match kind {
         FileKind::Series => series().map(|series| series.variable().name).collect(),
-        FileKind::Profiles => of(PROFILES),
+        FileKind::Profiles => profiles(false).map(|p| p.variable().name).collect(),
         FileKind::Grains => of(GRAINS),
         FileKind::Contacts => of(CONTACTS),
         // There is none: of water alone, see `super::fluid`.

@@ -18,7 +18,7 @@ mod writer;
 pub use writer::Writer;
 
 use anyhow::{Context, Result};
-use dem::output::{CONTACTS, GRAINS, PROFILES};
+use dem::output::{CONTACTS, GRAINS};
 use enum_map::{Enum, EnumMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -189,8 +189,11 @@ fn create_file(
             Box::new(series::SeriesFile::create(rows, variables)?)
         }
         FileKind::Profiles => {
-            let (fields, edges) = (fields(PROFILES)?, plan.profile_edges.clone());
-            Box::new(profiles::ProfilesFile::create(rows, fields, edges)?)
+            let all: Vec<_> = catalogue::profiles(plan.cells.is_some()).collect();
+            let variables = catalogue::named(&all, names, |profile| profile.variable().name)?;
+            let variables = variables.into_iter().copied().collect();
+            let edges = plan.profile_edges.clone();
+            Box::new(profiles::ProfilesFile::create(rows, variables, edges)?)
         }
         FileKind::Grains => Box::new(grains::GrainsFile::create(rows, fields(GRAINS)?, bed)?),
         FileKind::Contacts => Box::new(contacts::ContactsFile::create(rows, fields(CONTACTS)?)?),

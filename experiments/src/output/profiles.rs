@@ -1,11 +1,12 @@
 //! `profiles.nc`: means over horizontal layers.
 
+use super::catalogue::Profile;
 use super::netcdf::{define, describe, label, put};
 use super::rows::Rows;
 use super::{Frame, OutputFile};
 use anyhow::{Result, ensure};
 use dem::measure::profile;
-use dem::output::{Field, FieldReading, Storage, Variable};
+use dem::output::{Storage, Variable};
 use ndarray::{Array, Array1};
 
 /// Rows kept together.
@@ -28,7 +29,7 @@ const Z_BOUNDS: Variable = Variable {
 
 pub(super) struct ProfilesFile {
     rows: Rows,
-    fields: Vec<&'static Field>,
+    variables: Vec<Profile>,
     edges: Vec<f64>,
 }
 
@@ -37,7 +38,7 @@ impl ProfilesFile {
     /// layers, ascending.
     pub fn create(
         rows: impl FnOnce(usize) -> Result<Rows>,
-        fields: Vec<&'static Field>,
+        variables: Vec<Profile>,
         edges: Vec<f64>,
     ) -> Result<Self> {
         let ascending = edges.len() >= 2 && edges.windows(2).all(|e| e[0] < e[1]);
@@ -70,13 +71,14 @@ impl ProfilesFile {
         let bounds = Array::from_shape_fn((layers, 2), |(l, side)| edges[l + side]);
         put(file, &Z_BOUNDS, &[0, 0], &bounds.into_dyn())?;
 
-        for field in &fields {
+        for profile in &variables {
             let chunk = [CHUNK, layers, 3, 3];
-            rows.define(&field.variable, &chunk[..=field.variable.dims.len()])?;
+            let variable = profile.variable();
+            rows.define(variable, &chunk[..=variable.dims.len()])?;
         }
         Ok(Self {
             rows,
-            fields,
+            variables,
             edges,
         })
     }
@@ -84,14 +86,10 @@ impl ProfilesFile {
 
 impl OutputFile for ProfilesFile {
     fn write(&mut self, frame: &Frame) -> Result<()> {
-        let reading = FieldReading {
-            model: &frame.model,
-            now: &frame.snapshot,
-            edges: &self.edges,
-        };
         self.rows.begin(frame)?;
-        for field in &self.fields {
-            self.rows.array(&field.variable, &(field.read)(&reading))?;
+        for profile in &self.variables {
+            let values = profile.read(frame, &self.edges);
+            self.rows.array(profile.variable(), &values)?;
         }
         self.rows.end();
         Ok(())

@@ -5,7 +5,8 @@ use crate::protocol::{Past, PastWater};
 use crate::scene::water::pores::Stiffness;
 use crate::scene::{Phase, Scene};
 use anyhow::Result;
-use dem::{Model, State};
+use coupling::Report;
+use dem::{Drive, Model, State};
 
 /// Stiffness of the skeleton [Pa], given, known from before or measured now; none: it is not known,
 /// or the phase is dry.
@@ -31,14 +32,32 @@ pub fn stiffness(
     })
 }
 
+/// What is said of the coupling before the first step of a phase.
+pub fn describe(model: &Model, report: &Report) -> String {
+    let sheared = match model.drive {
+        Some(Drive::Velocity(velocity)) => {
+            let rate = velocity.abs() / report.height;
+            format!(
+                "\n  Deborah number {:.2e}, drainage time over that of shear at {rate:.2e} 1/s",
+                report.deborah(rate)
+            )
+        }
+        Some(Drive::ShearStress(_)) | None => String::new(),
+    };
+    format!("{report}{sheared}")
+}
+
 /// What a phase leaves: nothing after a dry one, whose bed may be another now.
-pub fn past(engine: &Engine, stiffness: Option<f64>) -> Option<PastWater> {
-    match engine {
+///
+/// # Errors
+/// A device that fails.
+pub fn past(engine: &Engine, stiffness: Option<f64>) -> Result<Option<PastWater>> {
+    Ok(match engine {
         Engine::Wet(bed) => Some(PastWater {
             cells: bed.cells(),
-            state: bed.water_state(),
+            state: bed.water_state()?,
             stiffness,
         }),
         Engine::Cpu(_) | Engine::Gpu(_) => None,
-    }
+    })
 }

@@ -115,7 +115,8 @@ pub fn read(root: &Table, made_in: MadeIn) -> Option<Bounds> {
     Some(Bounds {
         domain: Domain { size, periodic },
         height,
-        gravity: gravity.unwrap_or(-EARTH * DVec3::Z),
+        // As the resolved text says it, without a negative zero.
+        gravity: gravity.unwrap_or(DVec3::new(0.0, 0.0, -EARTH)),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use super::reader::{Range, Table};
 use super::units::{DENSITY, LENGTH};
-use crate::start::{RadiusLaw, Source};
+use crate::start::{LOOSE_FRACTION, RadiusLaw, Source};
 
 const GRAINS: &str = "[grains] with count = 1000, radius = \"10 mm\", density = \"2600 kg/m^3\"";
 const RADIUS: &str = "radius = { law = \"uniform\", min = \"9 mm\", max = \"11 mm\" }";
@@ -13,6 +13,9 @@ const SIZES: Range = Range::Within(1e-8, 1e2);
 /// it for longer steps.
 const DENSITIES: Range = Range::Within(10.0, 1e7);
 
+/// Solid fractions of a loose start: from a grain in a tower to where places are hard to find.
+const FRACTIONS: Range = Range::Within(1e-6, 0.33);
+
 /// Read `[grains]` and the file that it names.
 pub fn read(root: &Table) -> Option<Source> {
     root.missing("grains", GRAINS);
@@ -21,7 +24,7 @@ pub fn read(root: &Table) -> Option<Source> {
         [] => random(&table),
         ["state"] => {
             let why = "stands in the state that is read";
-            table.refuse(&["count", "radius", "density"], why);
+            table.refuse(&["count", "radius", "density", "solid_fraction"], why);
             let path = table.path("state")?;
             let saved = crate::output::state::load(&path)
                 .map_err(|error| table.wrong("state", format!("cannot be read: {error:#}")))
@@ -33,7 +36,8 @@ pub fn read(root: &Table) -> Option<Source> {
             Some(Source::State(Box::new(saved)))
         }
         ["bed"] => {
-            table.refuse(&["count", "radius"], "stands in the bed that is read");
+            let why = "stands in the bed that is read";
+            table.refuse(&["count", "radius", "solid_fraction"], why);
             let density = density(&table);
             let path = table.path("bed")?;
             let bed = crate::bed::read(&path)
@@ -50,7 +54,7 @@ pub fn read(root: &Table) -> Option<Source> {
         }
         _ => {
             table.refuse(
-                &["count", "radius", "density"],
+                &["count", "radius", "density", "solid_fraction"],
                 "stands in the file that is read",
             );
             table.wrong("bed", "contradicts state; remove one of them".into());
@@ -88,6 +92,12 @@ fn random(table: &Table) -> Option<Source> {
         table.choose("count", of_list?);
         of_list?
     };
+    let fraction = if table.has("solid_fraction") {
+        table.number("solid_fraction", FRACTIONS, "0.1")?
+    } else {
+        table.choose("solid_fraction", LOOSE_FRACTION);
+        LOOSE_FRACTION
+    };
     if count > MOST {
         table.wrong(
             "count",
@@ -99,6 +109,7 @@ fn random(table: &Table) -> Option<Source> {
         count: count as usize,
         law: law?,
         density: density?,
+        fraction,
     })
 }
 

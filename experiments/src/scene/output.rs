@@ -94,9 +94,14 @@ impl Scene {
 
 /// Energies of the instant are read from the state; the others are summed step by step.
 fn needs_sums(name: &str) -> bool {
-    ["dissipated_", "work_", "energy_residual"]
-        .iter()
-        .any(|start| name.starts_with(start))
+    [
+        "dissipated_",
+        "work_",
+        "energy_residual",
+        "solid_fraction_drift",
+    ]
+    .iter()
+    .any(|start| name.starts_with(start))
 }
 
 /// Read `[output]`, of a scene that is `wet` or dry; `phases` set the default intervals, and the mean `diameter` [m] of the

@@ -100,6 +100,12 @@ impl Kind {
     }
 }
 
+/// A quantity of any kind that scenes ask for, in SI units, and its unit.
+pub fn si(text: &str) -> Option<(f64, &'static str)> {
+    let read = |kind: &&Kind| kind.read(text).ok().map(|value| (value, kind.unit));
+    KINDS.iter().find_map(read)
+}
+
 /// The number in front, and the unit in the spelling that `runits` reads.
 fn split(text: &str) -> Result<(f64, String), String> {
     let text = text.trim();

@@ -5,21 +5,27 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
 
-/// Solid fraction of the start. Random sequential addition of equal spheres jams at 0.38
+/// Solid fraction of the start where a scene says nothing. Random sequential addition of equal spheres jams at 0.38
 /// (Widom 1966); well below it a place is found in a few tries.
 pub const FRACTION: f64 = 0.25;
 
 /// Tries for one grain before the whole is begun anew with more height.
 const TRIES: usize = 2000;
 
-/// Centres of spheres of these radii in `domain`, resting on nothing, above z = 0 [m].
-pub fn place(radius: &[f64], domain: &dem::Domain, random: &mut ChaCha8Rng) -> Vec<DVec3> {
+/// Centres of spheres of these radii in `domain`, resting on nothing, above z = 0 [m], that fill
+/// this fraction of the room up to the highest.
+pub fn place(
+    radius: &[f64],
+    domain: &dem::Domain,
+    fraction: f64,
+    random: &mut ChaCha8Rng,
+) -> Vec<DVec3> {
     let volume: f64 = radius
         .iter()
         .map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3))
         .sum();
     let largest = radius.iter().copied().fold(0.0, f64::max);
-    let mut height = volume / (FRACTION * domain.area()) + 2.0 * largest;
+    let mut height = volume / (fraction * domain.area()) + 2.0 * largest;
     loop {
         if let Some(position) = try_height(radius, domain, height, random) {
             return position;
@@ -143,7 +149,7 @@ mod tests {
     fn check(radius: &[f64], size: [f64; 2], periodic: [bool; 2]) {
         let domain = dem::Domain { size, periodic };
         let mut random = ChaCha8Rng::seed_from_u64(3);
-        let position = place(radius, &domain, &mut random);
+        let position = place(radius, &domain, FRACTION, &mut random);
         for i in 0..radius.len() {
             let (p, r) = (position[i], radius[i]);
             assert!(p.z >= r);
@@ -161,7 +167,7 @@ mod tests {
                 assert!(d.length() >= r + radius[j], "{i} overlaps {j}");
             }
         }
-        let again = place(radius, &domain, &mut ChaCha8Rng::seed_from_u64(3));
+        let again = place(radius, &domain, FRACTION, &mut ChaCha8Rng::seed_from_u64(3));
         assert_eq!(position, again);
     }
 

@@ -24,6 +24,8 @@ pub enum Source {
         law: RadiusLaw,
         /// Their density [kg/m³].
         density: f64,
+        /// The part of the room that they fill at first.
+        fraction: f64,
     },
     /// Places and sizes from a file.
     Bed {
@@ -44,6 +46,7 @@ impl Source {
                 count,
                 law,
                 density,
+                ..
             } => {
                 let mut grains = Grains::default();
                 for radius in law.draw(*count, &mut ChaCha8Rng::seed_from_u64(seed)) {
@@ -87,11 +90,11 @@ impl Source {
         if let Self::State(saved) = self {
             return Ok(saved.state.clone());
         }
-        if let Self::Loose { .. } = self {
+        if let Self::Loose { fraction, .. } = self {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
             // Radii took stream 0.
             random.set_stream(1);
-            grains.position = loose::place(&grains.radius, domain, &mut random);
+            grains.position = loose::place(&grains.radius, domain, *fraction, &mut random);
         }
         wrap(&mut grains, domain);
         check_inside(&grains, domain)?;

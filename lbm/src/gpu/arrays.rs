@@ -75,6 +75,11 @@ impl Arrays {
             .try_for_each(|(name, values)| self.write(device, name, values))
     }
 
+    /// Room for sources that the device makes itself.
+    pub fn make_sources(&mut self, device: &Device, places: usize) -> Result<(), Error> {
+        self.write(device, "sources", &vec![0.0; places])
+    }
+
     /// Bring the sources to the device.
     pub fn write_source(&mut self, device: &Device, k: &Coefficients<f32>) -> Result<(), Error> {
         self.write(device, "sources", &k.source)

@@ -8,6 +8,7 @@
 //! hundreds of steps at a time, with a table of what the sides give in each.
 
 mod arrays;
+pub mod bed;
 mod bindings;
 mod flags;
 pub mod memory;

@@ -12,9 +12,10 @@ const MOST: u64 = 256;
 /// Cells times steps of one submission at most: about a tenth of a second on a fast device, and
 /// less than what an operating system takes for a hang on a slow one.
 const MOST_CELLS: u64 = 1 << 31;
-/// Numbers of steps in a submission, the first of which may be odd; then two for a reading,
-/// between even steps and between odd ones.
-pub(super) const TICKS: usize = MOST as usize + 2;
+/// Numbers of steps in a submission, the first of which may be odd, and of what is read between
+/// them where grains go along; then two for a reading, between even steps and between odd ones.
+pub(super) const TICKS: usize = ROWS + 2;
+pub(super) const ROWS: usize = 2048;
 /// Threads of a workgroup in finite.wgsl.
 const THREADS: u32 = 64;
 
@@ -72,7 +73,7 @@ impl Solver {
 
     /// Tell the device what the sides gave last: the number of a reading.
     pub(super) fn write_last(&self) -> u32 {
-        let tick = MOST + self.steps % 2;
+        let tick = ROWS as u64 + self.steps % 2;
         self.device
             .write(&self.arrays.given, tick as usize, &[self.last]);
         tick as u32

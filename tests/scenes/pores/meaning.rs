@@ -22,7 +22,7 @@ fn silence_is_cold_water_between_tight_walls_in_cells_of_two_diameters() {
     assert!((water.spacing / 2e-3 - 1.0).abs() < 1e-6);
     assert_eq!(water.reach, Reach::Three);
     assert_eq!((water.interval, water.cavitation), (None, None));
-    assert_eq!(water.stiffness, Stiffness::Measured);
+    assert_eq!((water.stiffness, water.loose), (Stiffness::Measured, 1.0));
     assert_eq!(scene.phases.len(), 3);
     for phase in &scene.phases {
         let edges = phase.water.as_ref().unwrap();
@@ -38,6 +38,7 @@ fn phases_are_dry_or_have_walls_of_their_own() {
         "water.interval=4",
         "water.stiffness=30 MPa",
         "water.cavitation=-90 kPa",
+        "water.loose=2",
     ]);
     let water = scene.water.as_ref().unwrap();
     assert!(scene.phases[0].water.is_none());
@@ -54,6 +55,35 @@ fn phases_are_dry_or_have_walls_of_their_own() {
     assert_eq!(model.sides, shear.sides);
     assert_eq!((model.interval, model.stiffness), (Some(4), Some(1.0)));
     assert_eq!(model.cavitation.unwrap().pressure, -9e4);
+    assert_eq!(model.loose, 2.0);
+}
+
+#[test]
+fn water_may_be_pushed_in_through_a_wall() {
+    let scene = wet(&["phase.load.water={ bottom = { flux = \"3 mm/s\" } }"]);
+    let edges = scene.phases[1].water.as_ref().unwrap();
+    let flux = Side::Flux(Signal::Steady(3e-3));
+    assert_eq!(edges.sides, [flux, drained()]);
+    let both = "phase.load.water={ bottom = { flux = \"3 mm/s\", pressure = \"1 Pa\" } }";
+    let said = read(super::WET, &[both]).unwrap_err().to_string();
+    assert!(said.contains("contradicts flux"), "{said}");
+}
+
+#[test]
+fn a_suspension_fills_the_part_of_the_room_that_it_is_told() {
+    let part = |scene: &experiments::scene::Scene| {
+        let grains = &scene.start.grains;
+        let volume: f64 = (0..grains.len()).map(|k| grains.volume(k)).sum();
+        let height = -scene.start.walls[1].offset;
+        volume / (scene.domain.area() * height)
+    };
+    for (set, fraction) in [("seed=2", 0.25), ("grains.solid_fraction=0.05", 0.05)] {
+        let found = part(&wet(&[set]));
+        // A grain's height is added, and the highest grain may be lower than there is room.
+        assert!((found / fraction - 1.0).abs() < 0.2, "{set}: {found}");
+    }
+    let dense = read(super::WET, &["grains.solid_fraction=0.5"]).unwrap_err();
+    assert!(dense.to_string().contains("solid_fraction"), "{dense}");
 }
 
 #[test]
@@ -115,6 +145,7 @@ fn the_resolved_scene_is_the_same_scene() {
             "spacing",
             "interval",
             "cavitation",
+            "loose",
             "normal_stress",
             "bottom",
         ] {

@@ -2,6 +2,7 @@
 
 mod meaning;
 mod protocol;
+mod signals;
 
 use super::read;
 use experiments::backend::Backend;
@@ -12,7 +13,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
 /// A bed of two hundred grains that is pressed dry, loaded under water and sheared under water.
-const WET: &str = r#"
+pub const WET: &str = r#"
 title = "Small and wet"
 
 [box]
@@ -81,6 +82,14 @@ fn values(file: &Path, variable: &str) -> Vec<f64> {
     let found = file.variable(variable);
     let found = found.unwrap_or_else(|| panic!("no {variable}"));
     found.get_values(..).unwrap()
+}
+
+/// Area of the box [m²].
+const AREA: f64 = 16e-6;
+
+/// All values of a variable of the series of the run in the folder `out`.
+fn series(out: &Path, variable: &str) -> Vec<f64> {
+    values(&out.join("series.nc"), variable)
 }
 
 /// Results of the phase that presses the bed dry, made once.

@@ -1,12 +1,14 @@
-//! What water between grains leaves behind: its numbers in `series.nc`, and `fluid.nc`, every
-//! cell at some instants.
+//! What water between grains leaves behind: its numbers in `series.nc`, its layers in
+//! `profiles.nc`, and `fluid.nc`, every cell at some instants.
 
 mod cells;
 mod fields;
+mod profiles;
 mod scalars;
 
 pub(super) use cells::CellsFile;
 pub use fields::{FIELDS, Field};
+pub use profiles::{PROFILES, Profile};
 pub use scalars::{SCALARS, Scalar};
 
 use coupling::{Ledger, Report, Snapshot};
@@ -23,6 +25,10 @@ pub struct PoreReading {
     pub ledger: Ledger,
     /// Its force on the bottom and the top wall, away from the grains [N].
     pub on_walls: [f64; 2],
+    /// Pressure that is prescribed at the bottom and the top now [Pa]; none: no such wall.
+    pub prescribed: [Option<f64>; 2],
+    /// Volume that left through the bottom and the top since the phase began [m³].
+    pub left: [f64; 2],
 }
 
 /// The cells of the water between grains.
@@ -44,7 +50,7 @@ impl PoreReading {
     pub fn attribute(&self, rate: f64) -> Value {
         let report = &self.report;
         json!({
-            "regime": format!("{:?}", report.lattice.regime).to_lowercase(),
+            "regime": report.lattice.map_or("open".into(), |lattice| format!("{:?}", lattice.regime).to_lowercase()),
             "interval": report.interval,
             "sub_steps": report.sub_steps,
             "D_n": report.diffusivity,

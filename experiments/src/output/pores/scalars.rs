@@ -105,6 +105,18 @@ pub static SCALARS: &[Scalar] = &[
         water_volume,
     ),
     scalar(
+        "water_left_bottom",
+        "m3",
+        "volume of water that left through the bottom wall since the phase began",
+        |_, water| water.left[0],
+    ),
+    scalar(
+        "water_left_top",
+        "m3",
+        "volume of water that left through the top wall since the phase began",
+        |_, water| water.left[1],
+    ),
+    scalar(
         "vapour_volume",
         "m3",
         "volume of vapour where the water broke",
@@ -117,10 +129,56 @@ pub static SCALARS: &[Scalar] = &[
         |_, water| water.ledger.elastic,
     ),
     scalar(
+        "work_water",
+        "J",
+        "work of the water on the grains since the phase began",
+        |frame, _| match frame.model.ledger {
+            true => frame.snapshot.ledger.work_companion,
+            false => f64::NAN,
+        },
+    ),
+    scalar(
+        "work_walls_water",
+        "J",
+        "work of the walls on the water since the phase began",
+        |_, water| water.ledger.work_walls,
+    ),
+    scalar(
+        "work_sides_water",
+        "J",
+        "work of the pressure at drained sides on the water since the phase began",
+        |_, water| water.ledger.work_sides,
+    ),
+    scalar(
+        "dissipated_darcy",
+        "J",
+        "energy lost in the flow of water through the bed since the phase began",
+        |_, water| water.ledger.dissipated_darcy,
+    ),
+    scalar(
+        "dissipated_loose",
+        "J",
+        "energy that loose grains lost to the water since the phase began",
+        |_, water| water.ledger.dissipated_loose,
+    ),
+    scalar(
+        "energy_residual_water",
+        "J",
+        "work that arrived at the water and is not found: work - change of energy - dissipation",
+        |_, water| water.ledger.residual,
+    ),
+    scalar(
         "rattlers",
         "1",
         "part of the grains that carry less than a hundredth of the mean load",
         |_, water| water.report.rattlers,
+    ),
+    scalar(
+        "solid_fraction_drift",
+        "1",
+        "root of the mean square over the cells of the solid found there less what flowed there with \
+         the mean velocity of the grains that carry load, since the phase began",
+        |_, water| water.report.drift.unwrap_or(f64::NAN),
     ),
 ];
 

@@ -76,6 +76,8 @@ impl Edges {
         let [bottom, top] = [0, 1].map(|side| match &self.sides[side] {
             Side::Pressure(Signal::Steady(p)) => format!("at {p:.4e} Pa"),
             Side::Pressure(_) => "at a pressure that varies".into(),
+            Side::Flux(Signal::Steady(q)) => format!("takes in {q:.4e} m/s"),
+            Side::Flux(_) => "takes in a flux that varies".into(),
             _ => "tight".into(),
         });
         let stress = match self.normal_stress {

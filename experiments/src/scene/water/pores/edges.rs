@@ -1,7 +1,7 @@
 //! What is at the bottom and the top wall: in `[water]` for all phases, in a phase for itself.
 
 use crate::scene::reader::Table;
-use crate::scene::units::STRESS;
+use crate::scene::units::{STRESS, VELOCITY};
 use crate::scene::water::signal;
 use coupling::NormalStress;
 use lbm::{Side, Signal};
@@ -9,7 +9,7 @@ use lbm::{Side, Signal};
 /// The water at the walls, and what the stress on the upper one is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edges {
-    /// At the bottom and at the top: tight ([`Side::FreeSlip`]), or a pressure.
+    /// At the bottom and at the top: tight ([`Side::FreeSlip`]), a pressure, or a flux.
     pub sides: [Side; 2],
     /// What a `normal_stress` on the top wall is.
     pub normal_stress: NormalStress,
@@ -97,9 +97,13 @@ fn side(table: &Table, name: &'static str) -> Option<Side> {
     }
     let example = format!("{name} = {{ pressure = \"1 kPa\" }}");
     let side = table.table(name, &example)?;
+    if side.has("flux") {
+        side.refuse(&["pressure"], "contradicts flux");
+        return signal::read(&side, "flux", &VELOCITY).map(Side::Flux);
+    }
     side.missing(
         "pressure",
-        "pressure = \"1 kPa\", beyond that of the water at rest",
+        "pressure = \"1 kPa\", beyond that of the water at rest, or flux = \"1 mm/s\" into the bed",
     );
     signal::read(&side, "pressure", &STRESS).map(Side::Pressure)
 }

@@ -32,6 +32,8 @@ pub struct Pores {
     pub interval: Option<u64>,
     /// Where the stiffness of the skeleton comes from.
     pub stiffness: Stiffness,
+    /// Load of a grain, over the mean one, at which it counts half.
+    pub loose: f64,
     /// What is at the walls where a phase says nothing.
     pub edges: Edges,
 }
@@ -111,6 +113,7 @@ pub fn read(root: &Table, around: Option<&Around>) -> Option<Pores> {
     let cavitation = cavitation(&table);
     let interval = interval(&table);
     let stiffness = stiffness(&table);
+    let loose = loose(&table);
     let (cells, spacing, reach) = lattice?;
     Some(Pores {
         cells,
@@ -121,6 +124,7 @@ pub fn read(root: &Table, around: Option<&Around>) -> Option<Pores> {
         cavitation: cavitation?,
         interval: interval?,
         stiffness: stiffness?,
+        loose: loose?,
         edges: edges?,
     })
 }
@@ -170,6 +174,17 @@ fn stiffness(table: &Table) -> Option<Stiffness> {
     modulus.map(Stiffness::Given)
 }
 
+/// For soft and stiff grains: `coupling/studies/loose.csv`.
+const LOOSE: f64 = 1.0;
+
+fn loose(table: &Table) -> Option<f64> {
+    if !table.has("loose") {
+        table.choose("loose", LOOSE);
+        return Some(LOOSE);
+    }
+    table.number("loose", Range::Positive, "1")
+}
+
 impl Pores {
     /// The description for a phase with `edges`, where the skeleton is so stiff [Pa].
     pub fn model(&self, edges: &Edges, stiffness: Option<f64>) -> Model {
@@ -179,6 +194,7 @@ impl Pores {
             cavitation: self.cavitation,
             interval: self.interval,
             stiffness,
+            loose: self.loose,
             ..Model::new(self.cells, self.fluid, self.resistance)
         }
     }

@@ -1,0 +1,20 @@
+//! Grains and the water between them on the GPU.
+
+mod balance;
+mod bed;
+mod beside_cpu;
+mod dry;
+mod program;
+mod same_bits;
+mod traffic;
+
+use crate::lab::Suite;
+
+pub fn list(suite: &mut Suite) {
+    beside_cpu::list(suite);
+    balance::list(suite);
+    same_bits::list(suite);
+    traffic::list(suite);
+    dry::list(suite);
+    program::list(suite);
+}
