@@ -8,7 +8,7 @@
 )]
 mod bed;
 
-use coupling::Coupled;
+use coupling::{Coupled, Model};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -39,8 +39,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// Allocations of so many steps of a bed with a fluid step in each.
-fn allocations<const N: usize>(threads: usize) {
-    let mut water = bed::water(1e-12);
+fn allocations<const N: usize>(threads: usize, mut water: Model) {
     let finer = N / 2;
     water.cells = water.cells.map(|cells| finer * cells);
     water.interval = Some(1);
@@ -70,7 +69,12 @@ fn allocations<const N: usize>(threads: usize) {
 #[test]
 fn coupled_steps_allocate_nothing() {
     for threads in [1, 2] {
-        allocations::<3>(threads);
-        allocations::<5>(threads);
+        allocations::<3>(threads, bed::water(1e-12));
+        allocations::<5>(threads, bed::water(1e-12));
+        let through = Model {
+            sides: [bed::drained(), bed::drained()],
+            ..bed::water(1e-12)
+        };
+        allocations::<3>(threads, through);
     }
 }

@@ -35,34 +35,42 @@ impl<T: Real> Solver<T> {
 
     /// Pressure and flux of the cells of a layer, and what they contain, in cells.
     fn read_layer(&self, z: usize, pressure: &mut [f64], flux: &mut [[f64; 3]]) -> f64 {
-        let pressure_unit = self.scaling.pressure_unit();
-        let flux_unit = self.scaling.flux_unit(self.stretch);
-        let nx = self.model.cells[0];
         let first = z * pressure.len();
         let mut content = 0.0;
         for (cell, (pressure, flux)) in pressure.iter_mut().zip(flux).enumerate() {
-            if !self.fluid[first + cell] {
-                continue;
+            if let Some(found) = self.read_cell(first + cell) {
+                (*pressure, *flux) = (found.0, found.1);
+                content += found.2;
             }
-            let at = [cell % nx, cell / nx, z];
-            let arrived = self.arrived(at);
-            let place = self.populations.grid.place(at);
-            // SAFETY: a place of the lattice.
-            let (p, j) = unsafe { (self.kernels.reading)(&self.coefficients, place, &arrived) };
-            *pressure = p.double() * pressure_unit;
-            *flux = [0, 1, 2].map(|axis| j[axis].double() * flux_unit[axis]);
-            let pairs = arrived.forward.iter().chain(&arrived.backward);
-            content += arrived.rest.double() + pairs.map(|f| f.double()).sum::<f64>();
         }
         content
+    }
+
+    /// Pressure and flux of a cell, and what it contains, in cells; none of a solid one.
+    fn read_cell(&self, cell: usize) -> Option<(f64, [f64; 3], f64)> {
+        if !self.fluid[cell] {
+            return None;
+        }
+        let pressure_unit = self.scaling.pressure_unit();
+        let flux_unit = self.scaling.flux_unit(self.stretch);
+        let [nx, ny, _] = self.model.cells;
+        let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        let arrived = self.arrived(at);
+        let place = self.populations.grid.place(at);
+        // SAFETY: a place of the lattice.
+        let (p, j) = unsafe { (self.kernels.reading)(&self.coefficients, place, &arrived) };
+        let flux = [0, 1, 2].map(|axis| j[axis].double() * flux_unit[axis]);
+        let pairs = arrived.forward.iter().chain(&arrived.backward);
+        let content = arrived.rest.double() + pairs.map(|f| f.double()).sum::<f64>();
+        Some((p.double() * pressure_unit, flux, content))
     }
 
     /// Mean flux along z of a layer of cells [m/s], as a volume per area and time.
     pub fn upward_flux(&self, layer: usize) -> f64 {
         let [nx, ny, _] = self.model.cells;
-        let mut flux = vec![[0.0; 3]; nx * ny];
-        self.read_layer(layer, &mut vec![0.0; nx * ny], &mut flux);
-        flux.iter().map(|flux| flux[2]).sum::<f64>() / flux.len() as f64
+        let cells = layer * nx * ny..(layer + 1) * nx * ny;
+        let fluxes = cells.filter_map(|cell| Some(self.read_cell(cell)?.1[2]));
+        fluxes.sum::<f64>() / (nx * ny) as f64
     }
 
     /// Volume of water in each cell beyond that at zero pressure [m³], into `to`: x fastest, then

@@ -54,7 +54,7 @@ impl Open {
     ) -> [f64; 2] {
         let inertia = self.fluid.density / self.step;
         let nz = lattice.cells[2];
-        let squares = self.squares(lattice);
+        self.square(lattice);
         let mut outside = [0.0; 2];
         for node in 0..self.shares.len() {
             let (column, k) = (node / (nz + 1), node % (nz + 1));
@@ -87,7 +87,7 @@ impl Open {
                 let before = neighbour(lattice, cell, axis);
                 let others: f64 = (0..3)
                     .filter(|&other| other != axis)
-                    .map(|other| 0.5 * (squares[cell][other] + squares[before][other]))
+                    .map(|other| 0.5 * (self.squares[cell][other] + self.squares[before][other]))
                     .sum();
                 let own = self.flux[node][axis];
                 let speed = (own * own + others).sqrt();
@@ -115,16 +115,13 @@ impl Open {
     }
 
     /// Mean squares of the fluxes through the two faces of each cell along each axis.
-    fn squares(&self, lattice: &Lattice) -> Vec<[f64; 3]> {
-        let of = |cell| {
-            let mut mean = [0.0; 3];
+    fn square(&mut self, lattice: &Lattice) {
+        for cell in 0..lattice.count() {
             for (axis, (lower, upper)) in neighbours(lattice, cell).into_iter().enumerate() {
                 let pair = [lower, upper].map(|node| self.flux[node][axis].powi(2));
-                mean[axis] = 0.5 * (pair[0] + pair[1]);
+                self.squares[cell][axis] = 0.5 * (pair[0] + pair[1]);
             }
-            mean
-        };
-        (0..lattice.count()).map(of).collect()
+        }
     }
 
     /// The flux under the new pressure, the water's velocity, and what it keeps.

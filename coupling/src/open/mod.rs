@@ -64,6 +64,10 @@ pub(crate) struct Open {
     free: Vec<[f64; 3]>,
     yielding: Vec<[f64; 3]>,
     shear: Vec<[f64; 3]>,
+    /// Mean squares of the fluxes through the faces of each cell along each axis, and what would be
+    /// left in it without any gradient of pressure [m³].
+    squares: Vec<[f64; 3]>,
+    right: Vec<f64>,
 }
 
 /// The half cell at a wall through which water flows.
@@ -104,6 +108,8 @@ impl Open {
             free: vec![[0.0; 3]; nodes],
             yielding: vec![[0.0; 3]; nodes],
             shear: vec![[0.0; 3]; nodes],
+            squares: vec![[0.0; 3]; count],
+            right: vec![0.0; count],
         };
         let nz = lattice.cells[2];
         let Some(flux) = flux else {
@@ -186,23 +192,21 @@ impl Open {
         let outside = self.react(lattice, &grains);
         self.rows.lay(lattice, storage, &self.yielding, self.step);
         let areas = areas(lattice);
-        // What would be left without any gradient of pressure.
-        let mut right = vec![0.0; lattice.count()];
         for cell in 0..lattice.count() {
             let mut out = 0.0;
             for (axis, (lower, upper)) in neighbours(lattice, cell).into_iter().enumerate() {
                 out += areas[axis] * (self.free[upper][axis] - self.free[lower][axis]);
             }
-            right[cell] = content[cell] - gone[cell] - self.step * out;
+            self.right[cell] = content[cell] - gone[cell] - self.step * out;
         }
         for column in 0..lattice.count() / nz {
             let ends = [(0, 0), (nz - 1, nz)];
             for (side, (k, node)) in ends.into_iter().enumerate() {
                 let yielding = self.yielding[column * (nz + 1) + node][2];
-                right[column * nz + k] += self.step * areas[2] * yielding * outside[side];
+                self.right[column * nz + k] += self.step * areas[2] * yielding * outside[side];
             }
         }
-        solve(&mut self.rows, &right, &mut self.pressure)?;
+        solve(&mut self.rows, &self.right, &mut self.pressure)?;
         self.flow(lattice, outside, &grains);
         for cell in 0..lattice.count() {
             let mut out = 0.0;
