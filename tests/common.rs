@@ -10,6 +10,7 @@ use glam::DVec3;
 pub mod bed;
 pub mod packing;
 pub mod table;
+pub mod wet;
 
 /// Density of the grains [kg/m³].
 pub const DENSITY: f64 = 3600.0;

@@ -5,15 +5,17 @@
 //! A bed of 1000 grains, pressed here, is laid TILES x TILES times side by side. Dry and wet runs
 //! take turns, and medians are printed. Cells are DIAMETERS grain diameters wide, 2 or 1.
 
+#[path = "../tests/verification/bed.rs"]
+#[allow(dead_code, reason = "tests need more of the bed")]
+mod bed;
+
+use bed::{DENSITY, SIDE, STRESS, WATER, drained, law, pressed, with_load};
 use coupling::{Coupled, Model, Permeability, Resistance};
-use dem::contact::{Linear, Sliding, Tension};
-use dem::{ContactLaw, Domain, Solver, State, StressLoad, Surface, Wall, WallMotion, WallState};
+use dem::{Solver, State, StressLoad};
 use glam::DVec3;
-use lbm::{Fluid, Side, Signal};
 use std::time::Instant;
 
-/// Side of one tile [m], and cells of two diameters along it and upwards.
-const SIDE: f64 = 0.2;
+/// Cells of two diameters along a tile and upwards.
 const CELLS: usize = 5;
 const LAYERS: usize = 4;
 const TURNS: usize = 5;
@@ -37,7 +39,7 @@ fn main() {
 fn compare<const N: usize>(tiles: usize, threads: usize, steps: u64) {
     let state = tile(&pressed(), tiles);
     let grains = state.grains.len();
-    let model = model(tiles, 1e5, 78.0, 0.5, 0.0);
+    let model = model(tiles);
     println!("{grains} grains, {threads} threads, {steps} steps, medians of {TURNS} turns");
 
     let finer = N / 2;
@@ -45,7 +47,7 @@ fn compare<const N: usize>(tiles: usize, threads: usize, steps: u64) {
     let water = |permeability: f64, interval: Option<u64>| {
         let law = Resistance::Darcy(Permeability::constant(permeability));
         let mut water = Model::new(cells, WATER, law);
-        water.sides[1] = Side::Pressure(Signal::Steady(0.0));
+        water.sides[1] = drained();
         water.interval = interval;
         let bed = Coupled::<N>::new(model.clone(), state.clone(), water, None, threads);
         bed.expect("the water is possible")
@@ -85,89 +87,17 @@ fn compare<const N: usize>(tiles: usize, threads: usize, steps: u64) {
     }
 }
 
-const WATER: Fluid = Fluid {
-    density: 1000.0,
-    viscosity: 1.8e-3,
-    compressibility: 4.5e-10,
-};
-
-fn model(tiles: usize, stress: f64, damping: f64, friction: f64, wall: f64) -> dem::Model {
-    let side = SIDE * tiles as f64;
-    let surface = |name: &str, normal, motion| Wall {
-        name: name.into(),
-        normal,
-        surface: Surface::Frictionless,
-        motion,
-    };
-    let load = StressLoad {
-        mean: stress,
-        amplitude: 0.0,
-        frequency: 0.0,
-        area: side * side,
-        mass: 15.5 * (tiles * tiles) as f64,
-        damping: wall * (tiles * tiles) as f64,
-    };
-    let law = Linear {
-        normal_stiffness: 1e7,
-        normal_damping: damping,
-        tension: Tension::Clip,
-        sliding: Some(Sliding {
-            stiffness: 1e6,
-            damping: 78.0,
-            friction_static: friction,
-            friction_dynamic: friction,
-        }),
-        rolling: None,
-        twisting: None,
-    };
-    dem::Model {
-        domain: Domain {
-            size: [side; 2],
-            periodic: [true, true],
-        },
-        gravity: DVec3::ZERO,
-        law: ContactLaw::Linear(law),
-        walls: vec![
-            surface("bottom", DVec3::Z, WallMotion::Held),
-            surface("top", -DVec3::Z, WallMotion::Stress(load)),
-        ],
-        drive: None,
-        step: 6.6e-6,
-        skin: None,
-        ledger: true,
-    }
-}
-
-/// A thousand grains that carry the wall.
-fn pressed() -> State {
-    let mut state = State::default();
-    let mut x = 0x2545_f491_4f6c_dd1d_u64;
-    let mut random = || {
-        x ^= x << 13;
-        x ^= x >> 7;
-        x ^= x << 17;
-        (x >> 11) as f64 / (1u64 << 53) as f64
-    };
-    for k in 0..1000 {
-        let site = [k % 8, k / 8 % 8, k / 64];
-        let place = site.map(|s| (s as f64 + 0.5 + 0.1 * (random() - 0.5)) * SIDE / 8.0);
-        let radius = 1e-2 * (0.9 + 0.2 * random());
-        let id = state.grains.add_sphere(DVec3::from(place), radius, 3600.0);
-        state.grains.velocity[id as usize] = DVec3::new(random(), random(), random()) - 0.5;
-    }
-    let wall = |offset| WallState {
-        offset,
-        velocity: 0.0,
-    };
-    state.walls = vec![wall(0.0), wall(-16.0 * SIDE / 8.0)];
-    let model = model(1, 1e5, 300.0, 0.05, 3000.0);
-    let mut solver = Solver::new(model, state, 1).expect("a loose bed is possible");
-    solver.advance(50_000).expect("a stable step");
-    let mut state = solver.snapshot().state;
-    state.grains.velocity.fill(DVec3::ZERO);
-    state.grains.angular_velocity.fill(DVec3::ZERO);
-    state.walls[1].velocity = 0.0;
-    state
+/// The bed of that many tiles under its load.
+fn model(tiles: usize) -> dem::Model {
+    let many = (tiles * tiles) as f64;
+    let one = bed::model(law(), STRESS);
+    let mut model = with_load(&one, |load| StressLoad {
+        area: many * load.area,
+        mass: many * load.mass,
+        ..load
+    });
+    model.domain.size = [SIDE * tiles as f64; 2];
+    model
 }
 
 /// The bed many times side by side, its contacts new.
@@ -179,7 +109,7 @@ fn tile(one: &State, tiles: usize) -> State {
     for k in 0..tiles * tiles {
         let shift = DVec3::new((k % tiles) as f64, (k / tiles) as f64, 0.0) * SIDE;
         for (position, radius) in one.grains.position.iter().zip(&one.grains.radius) {
-            state.grains.add_sphere(*position + shift, *radius, 3600.0);
+            state.grains.add_sphere(*position + shift, *radius, DENSITY);
         }
     }
     state

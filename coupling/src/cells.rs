@@ -1,66 +1,83 @@
 //! From the velocities of faces to pressure, and from pressure to what faces push with.
 
-use crate::faces::{Pass, drags};
+use crate::faces::Pass;
 use crate::kernel::half_width;
-use dem::{Moved, Threads};
+use crate::trend::Trend;
+use dem::{Moved, Row, Threads};
 
 impl<const N: usize> Pass<'_, N> {
-    /// Collect the volume that faces bring to the cells in `step` [s], and hand it on.
+    /// Collect the volume that faces have brought to the cells since the last exchange, and
+    /// hand it on: what grains feel.
     pub fn collect(
         &self,
         moved: &Moved,
         threads: &Threads,
-        step: f64,
-        pressure: impl Fn(usize, f64) -> f64,
+        pressure: impl Fn(usize, f64, &mut Trend) -> f64,
+    ) {
+        let top = self.wall_velocities(moved)[1];
+        let passed = moved.passed[0] as f64;
+        // SAFETY: velocities are written before the last meeting.
+        let velocity = unsafe { self.fields.velocity.read() };
+        for plane in threads.share(self.lattice.cells[0]) {
+            let range = self.lattice.cells_of(plane);
+            // SAFETY: each plane is one thread's.
+            let (collected, feel, trends) = unsafe {
+                let feel = self.fields.pressure.write(range.clone());
+                let trends = self.fields.trends.write(range.clone());
+                (self.fields.collected.write(range.clone()), feel, trends)
+            };
+            let mut book = self.book_cells(plane);
+            self.brought(plane, velocity, top, |own, flux| {
+                let volume = self.step * flux;
+                book(own, feel[own], passed, volume);
+                collected[own] += passed * volume;
+                feel[own] = pressure(range.start + own, collected[own], &mut trends[own]);
+            });
+        }
+    }
+
+    /// Volume that faces of these velocities bring to the cells of a plane, and the top wall [m³/s].
+    pub fn brought(
+        &self,
+        plane: usize,
+        velocity: &[Row],
+        top: f64,
+        mut each: impl FnMut(usize, f64),
     ) {
         let lattice = self.lattice;
         let [_, ny, nz] = lattice.cells;
-        let top = self.wall_velocities(moved.walls)[1];
         let side = lattice.spacing * lattice.height;
         let floor = lattice.spacing * lattice.spacing;
-        // SAFETY: velocities are written before the last meeting.
-        let velocity = unsafe { self.fields.velocity.read() };
-        for i in threads.share(lattice.cells[0]) {
-            let range = lattice.cells_of(i);
-            // SAFETY: each plane is one thread's.
-            let (collected, feel) = unsafe {
-                let feel = self.fields.pressure.write(range.clone());
-                (self.fields.collected.write(range.clone()), feel)
-            };
-            for j in 0..ny {
-                let here = lattice.cell([i, j, 0]);
-                let behind = lattice.cell([lattice.next(0, i), j, 0]);
-                let beside = lattice.cell([i, lattice.next(1, j), 0]);
-                for k in 0..nz {
-                    let v = &velocity[here + k].0;
-                    let above = if k + 1 < nz {
-                        velocity[here + k + 1].0[2]
-                    } else {
-                        top
-                    };
-                    let along =
-                        (velocity[behind + k].0[0] - v[0]) + (velocity[beside + k].0[1] - v[1]);
-                    let flux = side * along + floor * (above - v[2]);
-                    let own = j * nz + k;
-                    collected[own] += step * flux;
-                    feel[own] = pressure(here + k, collected[own]);
-                }
+        for j in 0..ny {
+            let here = lattice.cell([plane, j, 0]);
+            let behind = lattice.cell([lattice.next(0, plane), j, 0]);
+            let beside = lattice.cell([plane, lattice.next(1, j), 0]);
+            for k in 0..nz {
+                let v = &velocity[here + k].0;
+                let above = if k + 1 < nz {
+                    velocity[here + k + 1].0[2]
+                } else {
+                    top
+                };
+                let along = (velocity[behind + k].0[0] - v[0]) + (velocity[beside + k].0[1] - v[1]);
+                each(j * nz + k, side * along + floor * (above - v[2]));
             }
         }
     }
 
     /// What faces push their grains with, and walls.
-    pub fn push(&self, moved: &Moved, threads: &Threads) {
+    pub fn push(&self, threads: &Threads) {
         threads.meet();
         // SAFETY: pressure and velocities are written before this meeting.
         let pressure = unsafe { self.fields.pressure.read() };
         for plane in threads.share(self.lattice.cells[0]) {
-            self.push_plane(plane, pressure, drags(moved.step));
+            self.push_plane(plane, pressure);
         }
         threads.meet();
     }
 
-    fn push_plane(&self, i: usize, pressure: &[f64], drags: bool) {
+    fn push_plane(&self, i: usize, pressure: &[f64]) {
+        let drags = self.share.is_some();
         let (lattice, frozen) = (self.lattice, self.frozen);
         let nz = lattice.cells[2];
         let side = lattice.spacing * lattice.height;
@@ -123,6 +140,7 @@ impl<const N: usize> Pass<'_, N> {
             self.give(i, &self.fields.push);
         }
         if drags {
+            self.book_reactions(i);
             // SAFETY: as above.
             let lines = unsafe { self.lines(i) };
             for (j, line) in lines.enumerate() {

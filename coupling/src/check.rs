@@ -62,9 +62,10 @@ pub(crate) fn check<const N: usize>(
             return refuse(format!("the {name}, {value}, must be positive"));
         }
     }
-    if model.renewal == 0 || model.interval == Some(0) {
+    if model.renewal == Some(0) || model.interval == Some(0) || model.exchange == Some(0) {
         return refuse(
-            "steps between renewals, and between fluid steps, must be at least 1".into(),
+            "steps between renewals, between exchanges, and between fluid steps, must be at least 1"
+                .into(),
         );
     }
     if let Some(stiffness) = model.stiffness

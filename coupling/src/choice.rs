@@ -1,10 +1,18 @@
-//! How often the fluid steps: from accuracy, not from stability.
+//! How often grains and water exchange, and the fluid steps: from accuracy, not from stability alone.
+//!
+//! From one exchange to the next, m grain steps, forces are held. Of the waves on the lattice the
+//! fastest turn by about 1.2 c/Δ, with the speed c of undrained sound; ahead of time (`trend.rs`) they are
+//! stable up to a turn of 1.1 in m = 8 steps, and 1.7 in 2. Where water drains meanwhile they are
+//! slower and damped. So m is 4, or the largest power of two in which sound crosses 0.6 cells at most.
+//! Longer exchanges are no good to loose grains, whose drag they make weaker: stiff beds (k_n = 1e9 N/m) that
+//! consolidate lose 0.3 % of their pressure by m = 4, and 2.5 % by 8.
 //!
 //! Between two fluid steps pressure follows the grains undrained, and at the fluid step the
 //! grains stand still. The error grows with D_n, the lattice diffusivity of the interval: 3 % at
 //! 0.25, 40 % at 13, where a drained bed looks twice as strong, without any sign of instability.
-//! So n is the largest power of two, up to the renewal, with D_n ≤ 0.25. Where even one grain
-//! step is too long, the fluid steps every time, several lattice steps each.
+//! So n is the largest power of two, up to 64, with D_n ≤ 0.25. Where even the steps of one
+//! exchange are too long, the fluid steps at each one, several lattice steps each: then pressure that is
+//! held is one that has drained, and nothing is invented.
 //!
 //! Pores are open where pressure spreads over more than 16 cells² in a grain step, at real water and
 //! grains of a millimetre over thousands, or without bounds where there is no grain: there
@@ -16,20 +24,37 @@
 //! four sub-steps at least.
 
 use crate::{Error, Model};
-use lbm::{Bed, Ends, Regime, Scaling};
+use lbm::{Bed, Ends, Fluid, Regime, Scaling};
 
 /// The default bound of D_n, that above which there is a warning, and that of refusal.
 const CHOSEN: f64 = 0.25;
 pub(crate) const WARNED: f64 = 0.5;
 pub(crate) const REFUSED: f64 = 3.0;
+/// The most grain steps from one fluid step to the next.
+const INTERVAL_MOST: u64 = 64;
 /// The most sub-steps of one fluid step.
 const SUB_STEPS_MOST: u64 = 4096;
 
-/// Grain steps of an interval, and lattice steps in it.
+/// The most grain steps from one exchange to the next, the most cells that sound crosses in them, and
+/// the number of these that is refused.
+const EXCHANGE_MOST: u64 = 4;
+const SOUND_MOST: f64 = 0.6;
+const SOUND_REFUSED: f64 = 0.9;
+
+/// Grain steps from one exchange to the next, those of an interval, and lattice steps in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Steps {
+    pub exchange: u64,
     pub interval: u64,
     pub sub_steps: u64,
+}
+
+impl Steps {
+    pub const EVERY_ONE: Self = Self {
+        exchange: 1,
+        interval: 1,
+        sub_steps: 1,
+    };
 }
 
 /// What the choice depends on.
@@ -47,7 +72,12 @@ pub(crate) struct Situation<'a> {
 
 /// The diffusivity of a grain step above which pores are open: a lattice would need dozens of
 /// sub-steps.
-const OPEN: f64 = 16.0;
+pub const OPEN: f64 = 16.0;
+
+/// Least density of grains in open pores [kg/m³].
+pub fn open_needs_density(fluid: &Fluid) -> f64 {
+    1.6 * fluid.density
+}
 
 /// Is what open pores need there? The water's mass enters the grains' motion a step late, which
 /// is stable while ρ (1 - φ)/φ < ρ_s: at 1.6 times the density of water down to a porosity of 0.385.
@@ -59,7 +89,7 @@ pub(crate) fn open_is_possible(model: &Model, density: f64) -> Result<(), Error>
                 .into(),
         ));
     }
-    let least = 1.6 * model.fluid.density;
+    let least = open_needs_density(&model.fluid);
     if density < least {
         return Err(Error::Invalid(format!(
             "grains of {density:.0} kg/m³ are too light for water in open pores, whose inertia \
@@ -89,11 +119,12 @@ impl Situation<'_> {
                     .into(),
             ));
         }
-        let interval = self.interval()?;
+        let exchange = self.exchange()?;
+        let interval = self.interval(exchange)?;
         let most = self.diffusivity * interval as f64;
         let courant = self.courant * interval as f64;
         let resonates = self.storage < 0.3 && courant < 1.5 && most > 0.2;
-        let many = interval == 1 && most > CHOSEN;
+        let many = interval == exchange && most > CHOSEN;
         let mut sub_steps = if resonates || many { 4 } else { 1 };
         loop {
             fluid.step = Some(interval as f64 * self.step / sub_steps as f64);
@@ -104,16 +135,49 @@ impl Situation<'_> {
             }
         }
         Ok(Steps {
+            exchange,
             interval,
             sub_steps,
         })
     }
 
-    fn interval(&self) -> Result<u64, Error> {
+    fn exchange(&self) -> Result<u64, Error> {
+        let given = self.model.interval;
+        if let Some(m) = self.model.exchange {
+            if let Some(n) = given.filter(|n| n % m != 0) {
+                return Err(Error::Invalid(format!(
+                    "the fluid steps at exchanges between grains and water: an interval of {n} grain \
+                     steps is no multiple of an exchange of {m}"
+                )));
+            }
+            let crossed = m as f64 * self.courant;
+            if m > 1 && crossed > SOUND_REFUSED {
+                let fitting = ((SOUND_MOST / self.courant) as u64).max(1);
+                return Err(Error::Invalid(format!(
+                    "in an exchange of {m} grain steps sound crosses {crossed:.2} cells, more than \
+                     {SOUND_REFUSED}: pressure that is held so long feeds waves; give an exchange of \
+                     {fitting} steps, or none"
+                )));
+            }
+            return Ok(m);
+        }
+        let fits = |m: u64| {
+            m <= EXCHANGE_MOST
+                && m as f64 * self.courant <= SOUND_MOST
+                && given.is_none_or(|n| n % m == 0)
+        };
+        let mut m = 1;
+        while self.model.predicts && fits(2 * m) {
+            m *= 2;
+        }
+        Ok(m)
+    }
+
+    fn interval(&self, exchange: u64) -> Result<u64, Error> {
         let d = self.diffusivity;
         if let Some(n) = self.model.interval {
             let most = n as f64 * d;
-            if n > 1 && most > REFUSED {
+            if n > exchange && most > REFUSED {
                 let fitting = ((CHOSEN / d) as u64).max(1);
                 return Err(Error::Invalid(format!(
                     "in {n} grain steps pressure diffuses over {most:.1} cells², more than \
@@ -123,8 +187,8 @@ impl Situation<'_> {
             }
             return Ok(n);
         }
-        let mut n = 1;
-        while 2 * n <= self.model.renewal && 2.0 * n as f64 * d <= CHOSEN {
+        let mut n = exchange;
+        while 2 * n <= INTERVAL_MOST && 2.0 * n as f64 * d <= CHOSEN {
             n *= 2;
         }
         Ok(n)

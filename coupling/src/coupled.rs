@@ -1,6 +1,7 @@
 //! Grains and water that go along together.
 
-use crate::{Ledger, Model, Report, State, Water};
+use crate::water::Pending;
+use crate::{Ledger, Model, Report, Snapshot, State, Water};
 
 /// Why a coupled run was not made, or stopped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,10 +14,17 @@ pub enum Error {
     Grains(#[from] dem::Error),
     /// The water.
     #[error("water: {0}")]
-    Water(#[from] lbm::Error),
+    Water(lbm::Error),
     /// The device of a coupled bed on the GPU fails.
     #[error(transparent)]
     Device(#[from] shaders::Error),
+}
+
+/// Its text is in this one's: a source would be told twice.
+impl From<lbm::Error> for Error {
+    fn from(error: lbm::Error) -> Self {
+        Self::Water(error)
+    }
 }
 
 /// A bed with its water; the kernel reaches `N` cells, 3 in cells of two grain diameters, 5 in
@@ -61,6 +69,18 @@ impl<const N: usize> Coupled<N> {
     /// The water.
     pub fn water(&self) -> &Water<N> {
         &self.water
+    }
+
+    /// The water now, also between two exchanges.
+    pub fn snapshot(&self) -> Snapshot {
+        self.water
+            .snapshot_after(&Pending::of(&self.water, &self.grains))
+    }
+
+    /// What must be known of the water to go on from now.
+    pub fn state(&self) -> State {
+        self.water
+            .state_after(&Pending::of(&self.water, &self.grains))
     }
 
     /// What the numbers of the coupling are, and what was seen of it.

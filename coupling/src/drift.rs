@@ -97,7 +97,7 @@ impl<const N: usize> Water<N> {
 
     /// The solid has been laid anew.
     pub(crate) fn drift_to(&mut self, bed: &Bed) {
-        if !self.books.kept {
+        if !self.books.kept || self.is_open() {
             return;
         }
         let drift = &mut self.drift;

@@ -73,9 +73,6 @@ pub(crate) struct Exchange {
     /// axis take.
     pub drag: Vec<Row>,
     pub grip: Vec<[Row; 3]>,
-    /// Half a step over the mass of each grain along the axes along which it is free [s/kg], in the
-    /// solver's order.
-    pub pace: Vec<Row>,
     /// Work before each group, in slots.
     work: Vec<usize>,
 }
@@ -141,7 +138,6 @@ impl Exchange {
             rows.clear();
             rows.resize(slots, Row::ZERO);
         }
-        self.pace.clear();
         self.grip.clear();
         self.grip.resize(slots, [Row::ZERO; 3]);
     }

@@ -58,6 +58,8 @@ fn agree<const N: usize>(cells: [usize; 3], kernels: &Kernels<N>) {
         frozen: &frozen,
         fields: &fields,
         walls: [0, 1],
+        step: 1.0,
+        share: None,
     };
     let [sums] = pass.sums_of([&exchange.counts]);
     let field: Vec<Row> = (0..lattice.count())

@@ -5,9 +5,12 @@
 //! Q = Σ v_f A_f from its six faces, and a pressure difference G_f = A_f (p_right - p_left) pushes
 //! a face's grains by -a_if G_f and the walls by their share.
 //!
+//! Velocities are means since the last exchange, ways over the time that they took.
+//!
 //! Loose grains: every few steps they are dragged towards the mean, each by s_f γ_i K_if (v_f - v_i)
 //! at each of its faces, and the face's grains get what is lost, R_f = Σ s_f γ_i K_if (v_i - v_f).
-//! γ_i = (1 - w_i) m ν T/dt is the drag of the T between two drags at once. The velocity between
+//! γ_i = (1 - w_i) m ν T/dt is the drag of the T between two drags at once, spread over the steps
+//! until the next exchange. The velocity between
 //! the two crowds falls by the rate ν + Σ γ K/m_f, m_f = ρ Σ w V K, times T: by r, were it not
 //! for s_f = 1/max(1 + r/2, r). So the mean over T of the velocity that a steady force keeps up is
 //! that of drag in every step, up to r = 2, and nothing overshoots beyond: the quadratic form of
@@ -15,25 +18,21 @@
 //! of k_n = 1e9 N/m too weak a drag shows: pressure at T = 0.4 was 13.6 % low with implicit drag,
 //! 1/(1 + r), every 8 steps, 10.8 % with this one every 4, 10 % with drag in every step.
 
+use crate::books::{Dragged, PlaneBooks};
 use crate::exchange::Exchange;
-use crate::gather::Given;
+use crate::gather::{Drawn, Given};
 use crate::kernel::half_width;
 use crate::kernels::{Kernels, Scatter};
 use crate::lattice::Lattice;
-use crate::ledger::book_given;
 use crate::nodes::{Plane, Scratch};
 use crate::open::End;
 use crate::terms::{Moments, SHEETS, Sheets, TERMS};
-use dem::{Moved, Row, Shared, Threads, WallState};
+use crate::trend::Trend;
+use dem::{Moved, Row, Shared, Threads};
 use std::ops::Range;
 
-/// Steps between two drags of loose grains.
+/// Steps between two drags of loose grains, where exchanges are not farther apart.
 pub(crate) const DRAG_EVERY: u64 = 4;
-
-/// Is loose grains' drag part of this step? Not of the forces at which water joins.
-pub(crate) fn drags(step: u64) -> bool {
-    step > 0 && step.is_multiple_of(DRAG_EVERY)
-}
 
 /// What faces weigh, until the next renewal. One row a node, for its lower faces along x, y, z.
 #[derive(Default)]
@@ -48,12 +47,12 @@ pub(crate) struct Frozen {
     pub walls: Vec<[f64; 2]>,
 }
 
-/// What changes in every step.
+/// What changes at every exchange.
 pub(crate) struct Fields {
-    /// Σ w V B v and Σ γ B v over the grains of each cell, one entry a group.
+    /// Σ w V B and Σ γ B times the ways over the grains of each cell, one entry a group.
     pub moments: Shared<Moments>,
     pub loose: Shared<Moments>,
-    /// Mean velocity [m/s] of the lower faces of each cell.
+    /// Mean velocity since the last exchange [m/s] of the lower faces of each cell.
     pub velocity: Shared<Row>,
     /// R_f [N].
     pub reaction: Shared<Row>,
@@ -69,14 +68,18 @@ pub(crate) struct Fields {
     pub ends: Vec<[End; 2]>,
     /// ∫Q dt since the last fluid step [m³], one entry a cell.
     pub collected: Shared<f64>,
-    /// Pressure that grains feel [Pa].
+    /// Pressure that grains feel until the next exchange [Pa], and how it went.
     pub pressure: Shared<f64>,
+    pub trends: Shared<Trend>,
     /// Force on the bottom and the top wall, away from the grains [N], one entry a plane.
     pub on_walls: Shared<[f64; 2]>,
-    /// Σ power that grains have lost by drag [W], one entry a grain in the present order, and that
-    /// faces have given back, one a plane (`ledger.rs`).
+    /// What the ledger needs (`ledger.rs`), empty where there is none: drag on each grain [N] and what
+    /// it has lost by it [J], in the present order; what cells collect in a step [m³]; sums of planes.
+    pub dragged: Shared<Row>,
     pub lost: Shared<f64>,
-    pub given: Shared<[f64; 2]>,
+    pub brought: Shared<f64>,
+    pub books: Shared<PlaneBooks>,
+    pub dragged_at: Dragged,
 }
 
 impl Fields {
@@ -106,9 +109,13 @@ impl Fields {
             ends: Vec::new(),
             collected: numbers(count),
             pressure: numbers(count),
+            trends: Shared::new(vec![Trend::default(); count]),
             on_walls: Shared::new(vec![[0.0; 2]; planes]),
-            lost: Shared::new(Vec::new()),
-            given: Shared::new(vec![[0.0; 2]; planes]),
+            dragged: rows(0),
+            lost: numbers(0),
+            brought: numbers(0),
+            books: Shared::new(vec![PlaneBooks::default(); planes]),
+            dragged_at: Dragged::default(),
         }
     }
 }
@@ -122,6 +129,10 @@ pub(crate) struct Pass<'a, const N: usize> {
     pub fields: &'a Fields,
     /// Indices of the bottom and the top wall.
     pub walls: [usize; 2],
+    /// Grain step [s].
+    pub step: f64,
+    /// Part of a drag that each of the steps until the next exchange takes, if there is one.
+    pub share: Option<f64>,
 }
 
 impl<const N: usize> Pass<'_, N> {
@@ -129,41 +140,53 @@ impl<const N: usize> Pass<'_, N> {
     pub fn follow(&self, moved: &Moved, threads: &Threads) {
         let (exchange, fields) = (self.exchange, self.fields);
         assert!(
-            moved.velocity.len() >= exchange.count,
+            moved.way.len() >= exchange.count,
             "grains came without notice"
         );
         let groups = exchange.share(threads);
         let scatter = self.kernels.scatter;
-        // SAFETY: each group is one thread's until they meet; there are velocities of all grains.
+        // SAFETY: each group is one thread's until they meet; there are ways of all grains.
         unsafe {
             let moments = fields.moments.write(groups.clone());
             scatter(
                 exchange,
                 groups.clone(),
                 &exchange.counts,
-                moved.velocity,
+                moved.way,
                 moments,
             );
-            if drags(moved.step) {
+            if self.share.is_some() {
                 let moments = fields.loose.write(groups.clone());
-                scatter(exchange, groups, &exchange.drag, moved.velocity, moments);
+                scatter(exchange, groups, &exchange.drag, moved.way, moments);
             }
         }
         threads.meet();
-        let walls = self.wall_velocities(moved.walls);
+        let (rate, walls) = (self.rate(moved), self.wall_velocities(moved));
         for plane in threads.share(self.lattice.cells[0]) {
-            self.mean_velocities(plane, walls);
-            if drags(moved.step) {
-                self.reactions(plane);
+            let range = self.lattice.cells_of(plane);
+            // SAFETY: each plane is one thread's; moments are read between two meetings.
+            unsafe {
+                let velocity = fields.velocity.write(range);
+                self.take(plane, fields.moments.read(), velocity);
+                self.mean_velocities(plane, rate, walls, velocity);
             }
-            self.book_given(plane, moved.step);
+            self.book_given(plane, moved);
+            if let Some(share) = self.share {
+                self.reactions(plane, rate, share);
+            }
         }
         threads.meet();
     }
 
-    /// Velocities of the bottom and the top wall along z.
-    pub fn wall_velocities(&self, walls: &[WallState]) -> [f64; 2] {
-        let [bottom, top] = self.walls.map(|k| walls[k].velocity);
+    /// What makes velocities of ways [1/s].
+    pub fn rate(&self, moved: &Moved) -> f64 {
+        1.0 / (self.step * moved.passed[0] as f64)
+    }
+
+    /// Mean velocities of the bottom and the top wall along z since the last exchange.
+    pub fn wall_velocities(&self, moved: &Moved) -> [f64; 2] {
+        let rate = self.rate(moved);
+        let [bottom, top] = self.walls.map(|k| rate * moved.wall_ways[k]);
         [bottom, -top]
     }
 
@@ -227,17 +250,12 @@ impl<const N: usize> Pass<'_, N> {
         }
     }
 
-    fn mean_velocities(&self, plane: usize, walls: [f64; 2]) {
+    /// Mean velocities of the faces of a plane from what they have taken of ways.
+    pub fn mean_velocities(&self, plane: usize, rate: f64, walls: [f64; 2], velocity: &mut [Row]) {
         let range = self.lattice.cells_of(plane);
-        // SAFETY: each plane is one thread's; moments are read between two meetings.
-        let velocity = unsafe {
-            let velocity = self.fields.velocity.write(range.clone());
-            self.take(plane, self.fields.moments.read(), velocity);
-            velocity
-        };
         for (velocity, inverse) in velocity.iter_mut().zip(&self.frozen.inverse[range.clone()]) {
             for lane in 0..4 {
-                velocity.0[lane] *= inverse.0[lane];
+                velocity.0[lane] *= rate * inverse.0[lane];
             }
         }
         if !self.frozen.walls.is_empty() {
@@ -250,24 +268,7 @@ impl<const N: usize> Pass<'_, N> {
         }
     }
 
-    /// Power of the reactions, at the drag and after the drift that follows it.
-    fn book_given(&self, plane: usize, step: u64) {
-        let range = self.lattice.cells_of(plane);
-        // SAFETY: each plane is one thread's.
-        let (given, velocity, reaction) = unsafe {
-            (
-                &mut self.fields.given.write(plane..plane + 1)[0],
-                &self.fields.velocity.read()[range.clone()],
-                &self.fields.reaction.read()[range],
-            )
-        };
-        book_given(given, step, || {
-            let each = reaction.iter().zip(velocity);
-            each.map(|(r, v)| r.xyz().dot(v.xyz())).sum()
-        });
-    }
-
-    fn reactions(&self, plane: usize) {
+    fn reactions(&self, plane: usize, rate: f64, share: f64) {
         let range = self.lattice.cells_of(plane);
         // SAFETY: each plane is one thread's; moments are read between two meetings.
         let (reaction, velocity) = unsafe {
@@ -280,8 +281,8 @@ impl<const N: usize> Pass<'_, N> {
         for ((reaction, velocity), (ease, loose)) in reaction.iter_mut().zip(velocity).zip(weights)
         {
             for lane in 0..3 {
-                let given = ease.0[lane] * reaction.0[lane];
-                reaction.0[lane] = given - loose.0[lane] * velocity.0[lane];
+                let given = ease.0[lane] * rate * reaction.0[lane];
+                reaction.0[lane] = share * (given - loose.0[lane] * velocity.0[lane]);
             }
         }
     }
@@ -347,18 +348,25 @@ impl<const N: usize> Pass<'_, N> {
     /// Add the water's push and lift to the forces of the grains `own`.
     pub fn gather(&self, moved: &Moved, own: Range<usize>, force: &mut [Row]) {
         assert!(
-            moved.velocity.len() >= self.exchange.count,
+            moved.way.len() >= self.exchange.count,
             "grains came without notice"
         );
-        // SAFETY: written before the last meeting; there are velocities of all grains.
+        // SAFETY: written before the last meeting; there are ways of all grains.
         unsafe {
             let push = self.given(&self.fields.push);
             (self.kernels.push)(push, own.clone(), force);
-            if drags(moved.step) {
+            if let Some(share) = self.share {
                 let mean = self.given(&self.fields.mean);
+                let drawn = Drawn {
+                    way: moved.way,
+                    rate: self.rate(moved),
+                    share,
+                };
                 // Each grain is one thread's.
-                let lost = self.fields.lost.write(own.clone());
-                (self.kernels.drag)(mean, moved.velocity, own, force, lost);
+                let dragged = self.dragged(own.clone());
+                dragged.fill(Row::ZERO);
+                (self.kernels.drag)(mean, drawn, own.clone(), force, dragged);
+                self.book_drag(moved, own);
             }
         }
     }

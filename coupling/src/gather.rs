@@ -147,19 +147,31 @@ pub(crate) fn push<V: Lanes, const N: usize>(given: Given, own: Range<usize>, fo
     }
 }
 
-/// Add the drag of loose grains towards the mean to the forces of the grains `own`, and the power
-/// that they lose by it to `lost`.
+/// Ways of grains, and what makes velocities of them, and of their drag that which is held.
+#[derive(Clone, Copy)]
+pub(crate) struct Drawn<'a> {
+    /// Ways [m], a row for each grain.
+    pub way: &'a [Row],
+    /// One over the time that they took [1/s].
+    pub rate: f64,
+    /// One over the exchanges' steps.
+    pub share: f64,
+}
+
+/// Add the drag of loose grains towards the mean to the forces of the grains `own`, and write it to
+/// `dragged` unless that is empty.
 ///
 /// # Safety
-/// `velocity` has a row for each grain.
+/// There is a way for each grain.
 #[inline(always)]
 pub(crate) unsafe fn drag<V: Lanes, const N: usize>(
     given: Given,
-    velocity: &[Row],
+    drawn: Drawn,
     own: Range<usize>,
     force: &mut [Row],
-    lost: &mut [f64],
+    dragged: &mut [Row],
 ) {
+    let (rate, share) = (V::splat(drawn.rate), V::splat(drawn.share));
     let exchange = given.exchange;
     let mut terms = [Row::ZERO; TERMS];
     for (k, group) in exchange.groups.iter().enumerate() {
@@ -168,30 +180,26 @@ pub(crate) unsafe fn drag<V: Lanes, const N: usize>(
         }
         given.fill::<V, N>(k, &mut terms);
         for slot in group.slots.clone() {
-            let drag = V::load(&exchange.drag[slot]);
+            let drag = V::load(&exchange.drag[slot]) * share;
             let [a, b, c] = &exchange.grip[slot];
             let slot = &exchange.slots[slot];
             let [x, y, z] = evaluate::<V>(&terms, slot);
             // SAFETY: the caller's promise.
-            let [u, v, w] = unsafe { columns::<V>(velocity, slot.grains) };
+            let [u, v, w] = unsafe { columns::<V>(drawn.way, slot.grains) };
             let drags = rows([
-                V::load(a).neg_mul_add(u, x) * drag,
-                V::load(b).neg_mul_add(v, y) * drag,
-                V::load(c).neg_mul_add(w, z) * drag,
+                V::load(a).neg_mul_add(u * rate, x) * drag,
+                V::load(b).neg_mul_add(v * rate, y) * drag,
+                V::load(c).neg_mul_add(w * rate, z) * drag,
             ]);
             for (grain, drag) in slot.grains.into_iter().zip(drags) {
-                let (grain, at) = (grain as usize, (grain as usize).wrapping_sub(own.start));
-                let (Some(force), Some(lost)) = (force.get_mut(at), lost.get_mut(at)) else {
-                    continue;
-                };
-                let sum = V::load(force) + drag;
-                sum.store(force);
-                // With the mean velocity before and after the kick.
-                let pace = V::load(&exchange.pace[grain]);
-                let mean = pace.mul_add(sum, V::load(&velocity[grain]));
-                let mut power = Row::ZERO;
-                (drag * mean).store(&mut power);
-                *lost -= power.0[0] + power.0[1] + power.0[2];
+                let at = (grain as usize).wrapping_sub(own.start);
+                if let Some(force) = force.get_mut(at) {
+                    (V::load(force) + drag).store(force);
+                }
+                if let Some(dragged) = dragged.get_mut(at) {
+                    // A lane without a grain repeats one, and drags it by nothing.
+                    (V::load(dragged) + drag).store(dragged);
+                }
             }
         }
     }

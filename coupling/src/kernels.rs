@@ -1,7 +1,7 @@
 //! The hot loops of the exchange, chosen once by processor, as in `dem`.
 
 use crate::exchange::Exchange;
-use crate::gather::{Given, drag, push, read};
+use crate::gather::{Drawn, Given, drag, push, read};
 use crate::nodes::{Plane, Scratch};
 use crate::scatter::scatter;
 use crate::terms::{Moments, Sheets};
@@ -10,21 +10,21 @@ use dem::lanes::Portable;
 use std::ops::Range;
 
 pub(crate) type Scatter = unsafe fn(&Exchange, Range<usize>, &[Row], &[Row], &mut [Moments]);
-type Drag = unsafe fn(Given, &[Row], Range<usize>, &mut [Row], &mut [f64]);
+type Drag = unsafe fn(Given, Drawn, Range<usize>, &mut [Row], &mut [Row]);
 
 /// The loops. They are unsafe because some need features of the processor, which the constructor
-/// has asked for, and because those that read velocities trust in one for each grain.
+/// has asked for, and because those that read ways trust in one for each grain.
 #[derive(Clone, Copy)]
 pub(crate) struct Kernels<const N: usize> {
-    /// Moments of some groups from what grains count and their velocities.
+    /// Moments of some groups from what grains count and their ways.
     pub scatter: Scatter,
-    /// The same, were all velocities 1, whatever is given.
+    /// The same, were all ways 1, whatever is given.
     pub sum: Scatter,
     /// The nodes of a plane take moments, with scratch.
     pub take: unsafe fn(&Plane<N>, &[Moments], Scratch, &mut [Row]),
     /// The nodes of a plane, on the lines of the scratch, give sheets.
     pub give: unsafe fn(&Plane<N>, Scratch, &mut [Sheets]),
-    /// Push own grains; and drag them by their velocities, with the power that they lose.
+    /// Push own grains; and drag them, with what each is dragged by.
     pub push: unsafe fn(Given, Range<usize>, &mut [Row]),
     pub drag: Drag,
     /// What each grain finds.
@@ -77,11 +77,11 @@ mod avx2 {
         exchange: &Exchange,
         range: Range<usize>,
         counts: &[Row],
-        velocity: &[Row],
+        way: &[Row],
         moments: &mut [Moments],
     ) {
         // SAFETY: the caller's promise.
-        unsafe { scatter::<Avx2, true>(exchange, range, counts, velocity, moments) }
+        unsafe { scatter::<Avx2, true>(exchange, range, counts, way, moments) }
     }
 
     #[target_feature(enable = "avx2,fma")]
@@ -89,11 +89,11 @@ mod avx2 {
         exchange: &Exchange,
         range: Range<usize>,
         counts: &[Row],
-        velocity: &[Row],
+        way: &[Row],
         moments: &mut [Moments],
     ) {
-        // SAFETY: it reads no velocity.
-        unsafe { scatter::<Avx2, false>(exchange, range, counts, velocity, moments) }
+        // SAFETY: it reads no way.
+        unsafe { scatter::<Avx2, false>(exchange, range, counts, way, moments) }
     }
 
     #[target_feature(enable = "avx2,fma")]
@@ -119,13 +119,13 @@ mod avx2 {
     #[target_feature(enable = "avx2,fma")]
     unsafe fn drag_avx2<const N: usize>(
         given: Given,
-        velocity: &[Row],
+        drawn: Drawn,
         own: Range<usize>,
         force: &mut [Row],
-        lost: &mut [f64],
+        dragged: &mut [Row],
     ) {
         // SAFETY: the caller's promise.
-        unsafe { drag::<Avx2, N>(given, velocity, own, force, lost) }
+        unsafe { drag::<Avx2, N>(given, drawn, own, force, dragged) }
     }
 
     #[target_feature(enable = "avx2,fma")]

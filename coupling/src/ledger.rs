@@ -5,28 +5,33 @@
 //!
 //! > E - E₀ = W_grains + W_walls + W_sides - D_darcy - D_loose - residual,
 //!
-//! Works of grains and walls are forces before and after a drift times half of it, and the loss of
-//! loose grains is the power of the forces that drag them. Darcy's loss is what the water's own
-//! steps take of E = ½ Σ β V_p p² and of the work at the sides, with what the lattice adds to
-//! R q²: 3 % for a bed of four cells that drains, more where pressure varies from cell to cell.
-//! The residual is then what the exchange between grains and cells loses or invents; it is a
-//! hundred-thousandth of the works of a load, and 3e-4 of them in shear.
+//! Works of grains and walls are forces before and after a drift times half of it, and so is what
+//! cells get of them, -p dV. The loss of loose grains is the work of the forces that drag them and of
+//! the reactions. Darcy's loss is what cells get, with the work at the sides, less what
+//! they keep in E = ½ Σ β V_p p²; in it is what the lattice adds to R q², 3 % for a bed of four cells that
+//! drains, more where pressure varies from cell to cell, and what it costs or gives that pressure is
+//! held between exchanges (`trend.rs`). The residual is then what the exchange between
+//! grains and cells loses or invents, and what a renewal of the pores does to pressure.
+//!
+//! In open pores the water has kinetic energy too, and `open/books.rs` tells what drag and its own
+//! shear take; there the residual is that forces on grains act half a step late.
 //!
 //! Works are those of p, the deviation from hydrostatic; buoyancy works on the grains too, and is
-//! a potential. Nothing is summed where the grains keep no ledger,
-//! nor yet in open pores, whose water has kinetic energy too.
+//! a potential. Nothing is summed where the grains keep no ledger.
 
 use crate::Water;
-use crate::faces::drags;
+use crate::water::Pending;
 use dem::{Bed, Moved, Shared, Threads};
 use lbm::Side;
 
-/// Energy and volume of the water. The first four are of this instant, works and losses sums since
+/// Energy and volume of the water. The first five are of this instant, works and losses sums since
 /// the water joined the grains: no numbers where these keep no ledger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ledger {
     /// Energy of compressed water, ½ Σ β V_p p², and of the room that vapour has opened [J].
     pub elastic: f64,
+    /// Kinetic energy of the water [J]; none where drag holds it.
+    pub kinetic: f64,
     /// Water beyond that at rest, with what has been collected since the last fluid step [m³].
     pub content: f64,
     /// Vapour [m³].
@@ -39,8 +44,10 @@ pub struct Ledger {
     pub work_walls: f64,
     /// Work of what presses water in through open sides, less that against which it leaves [J].
     pub work_sides: f64,
-    /// Lost in the flow of water through the bed [J].
+    /// Lost in the flow of water through the bed, by its own shear too [J].
     pub dissipated_darcy: f64,
+    /// Lost to the method in open pores, whose pressure is implicit in time [J].
+    pub dissipated_method: f64,
     /// Lost in the drag of loose grains [J].
     pub dissipated_loose: f64,
     /// Work that arrived and is not found [J]: work - change of energy - dissipation.
@@ -55,29 +62,30 @@ pub(crate) struct Books {
     start: [f64; 2],
     walls: Shared<WallWork>,
     sides: f64,
+    /// What renewals have made of the energy [J].
+    renewed: f64,
+    /// Lost on a lattice before the pores opened [J].
     darcy: f64,
-    /// What had been collected before the last step before a fluid step [m³].
-    collected: Shared<f64>,
     /// Of the loose grains in orders that are gone.
     loose: f64,
 }
 
-/// Work of the walls until the forces of the last step, and velocities before these [m/s].
+/// Work of the walls until the last exchange, but for their ways in half of the step before it [m].
 #[derive(Clone, Copy, Default)]
 struct WallWork {
     work: f64,
-    before: [f64; 2],
+    half: [f64; 2],
 }
 
 impl Books {
-    pub fn new(kept: bool, cells: usize) -> Self {
+    pub fn new(kept: bool) -> Self {
         Self {
             kept,
             start: [0.0; 2],
             walls: Shared::new(vec![WallWork::default()]),
             sides: 0.0,
+            renewed: 0.0,
             darcy: 0.0,
-            collected: Shared::new(vec![0.0; if kept { cells } else { 0 }]),
             loose: 0.0,
         }
     }
@@ -87,25 +95,80 @@ impl<const N: usize> Water<N> {
     /// The water joins now.
     pub(crate) fn open_books(&mut self, bed: &Bed) {
         self.books.start = [self.elastic(|_| 0.0), self.lift_potential(bed)];
+        if self.books.kept {
+            self.fields.brought = Shared::new(vec![0.0; self.lattice.count()]);
+        }
     }
 
-    /// The work of the walls with the forces before this drift, and after the last one.
+    /// Book the work of the walls since the last exchange, but for half of the last step.
     pub(crate) fn book_walls(&self, moved: &Moved, threads: &Threads) {
+        if !self.books.kept {
+            return;
+        }
         for _ in threads.share(1) {
             // SAFETY: one thread alone has a share of one.
             let books = unsafe { &mut self.books.walls.write(0..1)[0] };
-            let now = self.walls.map(|wall| moved.walls[wall].velocity);
             for side in 0..2 {
-                let way = 0.5 * self.step * (books.before[side] + now[side]);
+                let wall = self.walls[side];
+                let half = 0.5 * self.step * moved.walls[wall].velocity;
+                let way = books.half[side] + moved.wall_ways[wall] - half;
                 books.work += self.pass().on_wall(side) * way;
+                books.half[side] = half;
             }
-            books.before = now;
         }
     }
 
     /// The order of the grains is about to change: take what each has lost.
     pub(crate) fn book_loose(&mut self) {
-        self.books.loose += self.step * self.fields.lost.get_mut().iter().sum::<f64>();
+        self.books.loose += self.fields.lost.get_mut().iter().sum::<f64>();
+    }
+
+    /// A renewal has made of this energy [J] what it is now.
+    pub(crate) fn book_renewal(&mut self, before: f64) {
+        self.books.renewed += self.energy() - before;
+    }
+
+    /// What Darcy's law has taken on the lattice [J], with what is pending: what cells have got, less
+    /// what they keep.
+    fn lost_on_lattice(&self, pending: &Pending) -> f64 {
+        // SAFETY: a shared borrow between steps: nobody writes.
+        let (planes, collected, pressure, brought) = unsafe {
+            (
+                self.fields.books.read(),
+                self.fields.collected.read(),
+                self.fields.pressure.read(),
+                self.fields.brought.read(),
+            )
+        };
+        let cells: f64 = brought
+            .iter()
+            .zip(pressure)
+            .zip(&pending.volume)
+            .map(|((half, pressure), volume)| -pressure * (0.5 * half + volume))
+            .sum();
+        let cells = cells + planes.iter().map(|plane| plane.cells).sum::<f64>();
+        let elastic = self.elastic(|cell| collected[cell] + pending.volume[cell]);
+        cells + self.books.sides + self.books.renewed - (elastic - self.books.start[0])
+    }
+
+    /// The pores open: no lattice takes anything from now on.
+    pub(crate) fn close_lattice_books(&mut self) {
+        // Not where the water only joins.
+        if !self.fields.brought.get_mut().is_empty() {
+            self.books.darcy = self.lost_on_lattice(&Pending::nothing(self));
+        }
+    }
+
+    /// Energy of the water now [J].
+    pub(crate) fn energy(&self) -> f64 {
+        // SAFETY: there is one thread.
+        let collected = unsafe { self.fields.collected.read() };
+        self.elastic(|cell| collected[cell])
+    }
+
+    /// Book the work at the sides, through which so much has left [m³] in a time [s].
+    pub(crate) fn book_sides(&mut self, left: [f64; 2], passed: f64) {
+        self.books.sides += self.work_of_sides(left, passed);
     }
 
     /// Energy of the water [J] when what has been collected has gone; of vapour the work that has
@@ -124,52 +187,6 @@ impl<const N: usize> Water<N> {
             whole - self.least[cell] * open
         });
         each.sum()
-    }
-
-    /// A drift is about to be collected. Half of the work of one before a fluid step is done with
-    /// the pressure which that leaves, not with that which was predicted.
-    pub(crate) fn mark_collected(&self, step: u64, threads: &Threads) {
-        if !self.books.kept || !self.drains(step) {
-            return;
-        }
-        for plane in threads.share(self.lattice.cells[0]) {
-            let range = self.lattice.cells_of(plane);
-            // SAFETY: each plane is one thread's.
-            unsafe {
-                let now = &self.fields.collected.read()[range.clone()];
-                self.books.collected.write(range).copy_from_slice(now);
-            }
-        }
-    }
-
-    /// What a fluid step begins with: energy [J], and the volume that the last drift has brought to
-    /// each cell [m³].
-    pub(crate) fn before_fluid_step(&mut self) -> f64 {
-        // SAFETY: there is one thread.
-        let gone = unsafe { self.fields.collected.read() };
-        let marked = self.books.collected.get_mut();
-        for (marked, gone) in marked.iter_mut().zip(gone) {
-            *marked = gone - *marked;
-        }
-        self.elastic(|cell| gone[cell]) + self.half_of_last(|cell| gone[cell])
-    }
-
-    /// A fluid step is made, before which there was this energy [J], and through bottom and top so
-    /// much has left [m³].
-    pub(crate) fn book_fluid_step(&mut self, energy: f64, left: [f64; 2], passed: f64) {
-        let work = self.work_of_sides(left, passed);
-        let now = self.elastic(|_| 0.0) + self.half_of_last(|_| 0.0);
-        self.books.sides += work;
-        self.books.darcy += energy + work - now;
-    }
-
-    /// Half of the work on the last volume that was collected, with the pressure now.
-    fn half_of_last(&self, gone: impl Fn(usize) -> f64) -> f64 {
-        // SAFETY: there is one thread.
-        let last = unsafe { self.books.collected.read() };
-        let each = last.iter().enumerate();
-        each.map(|(cell, last)| 0.5 * last * self.pressure_of(cell, gone(cell)))
-            .sum()
     }
 
     /// Work on what has come in through the sides, less what has `left` through them [m³], in the
@@ -205,35 +222,62 @@ impl<const N: usize> Water<N> {
 
 impl Ledger {
     pub(crate) fn of<const N: usize>(water: &Water<N>, grains: &dem::Solver) -> Self {
-        let now = water.snapshot();
+        let pending = Pending::of(water, grains);
+        let now = water.snapshot_after(&pending);
         let bed = grains.bed();
         let books = &water.books;
         let sum = |value: f64| if books.kept { value } else { f64::NAN };
+        let pass = water.pass();
         // SAFETY: a shared borrow between steps: nobody writes.
-        let (collected, walls, lost, given) = unsafe {
+        let (fields, collected, walls) = unsafe {
             (
+                &water.fields,
                 water.fields.collected.read(),
                 books.walls.read()[0],
-                water.fields.lost.read(),
-                water.fields.given.read(),
             )
         };
-        let elastic = water.elastic(|cell| collected[cell]);
+        let elastic = water.elastic(|cell| collected[cell] + pending.volume[cell]);
         let last: f64 = (0..2)
-            .map(|side| water.pass().on_wall(side) * walls.before[side])
+            .map(|side| {
+                let way = walls.half[side] + pending.wall_ways[water.walls[side]];
+                pass.on_wall(side) * way
+            })
             .sum();
         let lift = books.start[1] - water.lift_potential(&bed);
         let work_grains = sum(lift - grains.work_of_companion());
-        let work_walls = sum(walls.work + 0.5 * water.step * last);
-        let work_sides = sum(books.sides);
-        let lost: f64 = lost.iter().sum();
-        // Where the drag was the last that happened, the other half of its work is to come.
-        let given: f64 = given.iter().map(|[sum, last]| sum + last).sum();
-        let dissipated_loose = sum(books.loose + water.step * (lost - 0.5 * given));
-        let dissipated_darcy = sum(books.darcy);
+        let work_walls = sum(walls.work + last);
+        let open = water.flow.books();
+        let work_sides = sum(books.sides + open.sides);
+        // SAFETY: as above.
+        let (planes, lost, dragged) = unsafe {
+            (
+                fields.books.read(),
+                fields.lost.read(),
+                fields.dragged.read(),
+            )
+        };
+        let mut loose = books.loose + lost.iter().sum::<f64>()
+            - planes.iter().map(|plane| plane.given).sum::<f64>();
+        if fields.dragged_at.was_at(bed.step - pending.steps) {
+            let drawn = dragged.iter().zip(&pending.ways);
+            loose -= drawn
+                .map(|(drag, way)| drag.xyz().dot(way.xyz()))
+                .sum::<f64>();
+            let power = pass.power_given(0..water.lattice.count(), Some(&pending.velocity));
+            loose -= water.step * pending.steps as f64 * power;
+        }
+        let kinetic = water.flow.kinetic(&water.lattice);
+        let change = elastic - books.start[0] + kinetic - open.brought;
+        let dissipated_darcy = sum(match water.is_open() {
+            true => books.darcy + open.drag + open.shear,
+            false => water.lost_on_lattice(&pending),
+        });
+        let dissipated_method = sum(open.method);
+        let dissipated_loose = sum(loose);
         let work = work_grains + work_walls + work_sides;
         Self {
             elastic,
+            kinetic,
             content: now.content,
             vapour: now.vapour.iter().sum(),
             pores: now.porosity.iter().sum::<f64>() * water.lattice.volume(),
@@ -241,19 +285,9 @@ impl Ledger {
             work_walls,
             work_sides,
             dissipated_darcy,
+            dissipated_method,
             dissipated_loose,
-            residual: work - dissipated_darcy - dissipated_loose - (elastic - books.start[0]),
+            residual: work - dissipated_darcy - dissipated_method - dissipated_loose - change,
         }
-    }
-}
-
-/// Power of the faces' reactions at this step's velocities, kept for the half step after the drag
-/// too: `sum` and `last` of a plane.
-pub(crate) fn book_given(books: &mut [f64; 2], step: u64, power: impl FnOnce() -> f64) {
-    if drags(step) {
-        let power = power();
-        *books = [books[0] + power, power];
-    } else if drags(step - 1) {
-        *books = [books[0] + power(), 0.0];
     }
 }

@@ -18,22 +18,25 @@
 //! reach the grains as they are.
 //!
 //! # The path of one step
-//! 1. `dem` kicks and moves grains and walls: v(t + dt/2), x(t + dt).
-//! 2. `exchange.rs`: velocities are scattered to the faces of the cells, each the mean
+//! 1. `dem` kicks and moves grains and walls: v(t + dt/2), x(t + dt). What the water pushes with is held
+//!    for m steps (`choice.rs`), and what follows, up to contacts, happens in every m-th one, and at each
+//!    neighbour search: an exchange.
+//! 2. `exchange.rs`: ways since the last exchange are scattered to the faces of the cells, each the mean
 //!    over the grains near it, by weights that are frozen for a while (`kernel.rs`): grains to
 //!    moments of their cells (`scatter.rs`), these to faces (`nodes.rs`).
 //! 3. The pressure that follows at once, undrained, p = (N - ∫∮v dA dt) / (β V_p): without it
-//!    stiff water blows up, and it must cover the whole force.
+//!    stiff water blows up, and it must cover the whole force. Held is what it will be in the middle
+//!    of the kicks to come (`trend.rs`).
 //! 4. Every n steps the lattice takes what has been collected as a source and drains it.
-//!    n follows from accuracy (`choice.rs`); every 64 steps weights, porosity and permeability
-//!    are renewed, the content of each cell kept.
+//!    n follows from accuracy (`choice.rs`); at each search, and every 64 steps or more, weights, porosity and
+//!    permeability are renewed, the content of each cell kept.
 //! 5. Pressure differences across faces are gathered to the grains by the same weights: the
-//!    gather is the transpose of the scatter, so that the power of the forces is that of the
+//!    gather is the transpose of the scatter, so that the work of the forces is that of the
 //!    pressure on the volume, and sums of forces balance. Walls get the pressure of their cells.
 //! 6. `dem` adds contacts.
 //!
 //! On processors nothing is copied or allocated on this path, fluid steps included: water reads the
-//! velocities where `dem` keeps them, and adds to the very sums that move the grains
+//! ways where `dem` keeps them, and adds to the very sums that move the grains
 //! (`tests/allocation.rs` counts). Renewals of the weights, and neighbour searches, allocate.
 //!
 //! Sources: Goren et al. (2010), J. Geophys. Res. 115, B09216, for the equation; Kim, Tchelepi
@@ -52,6 +55,7 @@
     reason = "lanes, nodes and cells are indices of several arrays at once"
 )]
 
+mod books;
 mod cells;
 mod check;
 mod choice;
@@ -79,8 +83,10 @@ mod stiffness;
 mod terms;
 #[cfg(test)]
 mod tests;
+mod trend;
 mod water;
 
+pub use choice::{OPEN, open_needs_density};
 pub use coupled::{Coupled, Error};
 pub use drag::{Permeability, Resistance};
 pub use ledger::Ledger;

@@ -9,6 +9,30 @@
 //! water is as soft as the skeleton (k_n = 1e9 N/m) pressure leaks away past loosely held grains: of
 //! six beds 4.3 % of it until T = 0.4 with 0.5, root of the mean square, 2.5 % with 1 and with 2, but
 //! with 2 the mean of them is 0.9 % too high, with 1 0.5 % too low (`coupling/studies/loose.csv`).
+//!
+//! Grains that count little are dragged to the mean (`faces.rs`) by what Darcy's law says of a grain
+//! alone. That is a device: it holds weakly held grains, which the water would else push out
+//! of the way of its own pressure. Where the water is much stiffer than the skeleton, storage S times
+//! stiffness M ≪ 1, none is pushed far, and without drag pressure in consolidation is the same to 0.3 %
+//! (k_n = 1e7 N/m); but in shear drag costs strength, as φ²(μγ̇/k)d², which is nothing in nature, where a
+//! bed is thousands of grains high, and a tenth of the strength in one of 13. So grains get (S M/0.2)² of
+//! it, and all of it from S M = 0.2 on or where M is not known (`coupling/README.md`).
+
+use crate::Model;
+
+/// S M from which on loose grains get all of their drag.
+const TOWED: f64 = 0.2;
+
+impl Model {
+    /// Part of their drag that loose grains get in a bed of this porosity.
+    pub(crate) fn towed(&self, porosity: f64) -> f64 {
+        let Some(stiffness) = self.stiffness else {
+            return 1.0;
+        };
+        let softness = porosity * self.fluid.compressibility * stiffness;
+        (softness / TOWED).powi(2).min(1.0)
+    }
+}
 
 /// Loads of grains, averaged in time; by identity.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -25,10 +25,14 @@ pub struct Model {
     pub loose: f64,
     /// Time over which loads are averaged [s].
     pub load_memory: f64,
-    /// Grain steps from one fluid step to the next; none: chosen from accuracy.
+    /// Grain steps from one exchange between grains and water to the next; none: chosen.
+    pub exchange: Option<u64>,
+    /// Grain steps from one fluid step to the next, a multiple of those of an exchange; none: chosen
+    /// from accuracy.
     pub interval: Option<u64>,
-    /// Grain steps between two renewals of the weights.
-    pub renewal: u64,
+    /// Grain steps between two renewals of the weights, which are made at neighbour searches too;
+    /// none: as many as 0.4 times that takes, and 64 at least.
+    pub renewal: Option<u64>,
     /// Stiffness M of the skeleton [Pa], if it is known: for the report, and for the choice of
     /// sub-steps.
     pub stiffness: Option<f64>,
@@ -50,11 +54,21 @@ impl Model {
             cavitation: None,
             loose: 1.0,
             load_memory: 1e-3,
+            exchange: None,
             interval: None,
-            renewal: 64,
+            renewal: None,
             stiffness: None,
             predicts: true,
         }
+    }
+}
+
+impl Model {
+    /// Grain steps of this length [s] between two renewals of the weights. Where these change because
+    /// grains move there is a neighbour search; else they do with the loads, which are averaged.
+    pub(crate) fn renews_every(&self, step: f64) -> u64 {
+        let steps = 0.4 * self.load_memory / step;
+        self.renewal.unwrap_or((steps as u64).max(64))
     }
 }
 

@@ -6,12 +6,17 @@ use crate::softness::Softness;
 use crate::{Model, Water};
 use std::fmt;
 
+/// Convection of momentum over drag that is worth a warning.
+const CONVECTION: f64 = 0.1;
+
 /// What happened that a user must know.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Events {
     /// D_n and C of the present steps.
     pub diffusivity: f64,
     pub courant: f64,
+    /// Convection of momentum over drag in open pores, so far.
+    pub convection: Option<f64>,
     /// Lattices laid anew.
     pub relaid: u64,
     /// Time with vapour [s], and the most of it [m³].
@@ -32,6 +37,8 @@ impl Events {
 /// The numbers of the coupling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
+    /// Grain steps from one exchange between grains and water to the next.
+    pub exchange: u64,
     /// Grain steps from one fluid step to the next.
     pub interval: u64,
     /// Lattice steps in each.
@@ -69,6 +76,9 @@ pub struct Report {
     pub vapour_time: f64,
     /// The greatest volume of vapour [m³].
     pub vapour_most: f64,
+    /// In open pores, once water has moved: convection of momentum, which is left out, over the
+    /// drag, as root mean squares over cells and time.
+    pub convection: Option<f64>,
     /// What is wrong with water that is softer than water.
     softness: Option<Softness>,
     /// The lattice; none where pores are open and the water's momentum is solved instead.
@@ -118,6 +128,7 @@ impl Report {
         let events = numbers.events;
         let lattice = numbers.scaling.copied();
         Self {
+            exchange: numbers.steps.exchange,
             interval: numbers.steps.interval,
             sub_steps: numbers.steps.sub_steps,
             diffusivity: events.diffusivity,
@@ -135,13 +146,15 @@ impl Report {
             relaid: events.relaid,
             vapour_time: events.vapour_time,
             vapour_most: events.vapour_most,
+            convection: events.convection,
             softness: Softness::of(model, porosity),
             lattice,
         }
     }
 
     /// Deborah number: drainage time times `rate` of deformation [1/s]. Far above one the bed is
-    /// undrained, far below drained.
+    /// undrained; but far below it need not be drained, since suction is as great as a load σ already
+    /// from σ (S + 1/M)/ψ on, ψ the dilation over strain.
     pub fn deborah(&self, rate: f64) -> f64 {
         self.drainage_time * rate
     }
@@ -149,7 +162,7 @@ impl Report {
     /// What may be wrong with the numbers.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        if self.interval > 1 && self.diffusivity > WARNED {
+        if self.interval > self.exchange && self.diffusivity > WARNED {
             warnings.push(format!(
                 "pressure diffuses over {:.2} cells² in the {} grain steps between two fluid \
                  steps: above {WARNED} it is off by 10 % and more, above {REFUSED} a run invents \
@@ -158,6 +171,13 @@ impl Report {
             ));
         }
         warnings.extend(self.softness.and_then(|softness| softness.warning()));
+        if let Some(share) = self.convection.filter(|share| *share > CONVECTION) {
+            warnings.push(format!(
+                "convection of momentum, which open pores leave out, would be {:.0} % of the drag: \
+                 wakes and jets of several cells are not right, nor what follows from them",
+                100.0 * share
+            ));
+        }
         if self.vapour_time > 0.0 {
             warnings.push(format!(
                 "the water broke for {:.3e} s; at most {:.3e} m³ of vapour opened",
@@ -174,8 +194,13 @@ impl fmt::Display for Report {
         if self.lattice.is_some() {
             writeln!(
                 out,
-                "coupling: fluid every {} grain steps in {} of its own, D_n {:.3}, sigma {:.2}, C {:.2}",
-                self.interval, self.sub_steps, self.diffusivity, self.drag, self.courant
+                "coupling: exchange every {} grain steps, fluid every {} in {} of its own, D_n {:.3}, sigma {:.2}, C {:.2}",
+                self.exchange,
+                self.interval,
+                self.sub_steps,
+                self.diffusivity,
+                self.drag,
+                self.courant
             )?;
         } else {
             writeln!(

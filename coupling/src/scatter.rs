@@ -57,17 +57,17 @@ struct Kept<V> {
     brings: [V; 3],
 }
 
-/// The moments of some groups, of what grains count times their velocities; of
+/// The moments of some groups, of what grains count times their ways; of
 /// what they count alone where none is `MOVING`.
 ///
 /// # Safety
-/// There are velocities of all grains, or none is moving.
+/// There are ways of all grains, or none is moving.
 #[inline(always)]
 pub(crate) unsafe fn scatter<V: Lanes, const MOVING: bool>(
     exchange: &Exchange,
     range: Range<usize>,
     counts: &[Row],
-    velocity: &[Row],
+    way: &[Row],
     moments: &mut [Moments],
 ) {
     let zero = V::splat(0.0);
@@ -86,7 +86,7 @@ pub(crate) unsafe fn scatter<V: Lanes, const MOVING: bool>(
             let slots = exchange.slots[block.clone()].iter();
             for ((kept, slot), counts) in kept.iter_mut().zip(slots).zip(&counts[block.clone()]) {
                 // SAFETY: slots hold grains of the bed.
-                *kept = unsafe { keep::<V, MOVING>(slot, counts, velocity) };
+                *kept = unsafe { keep::<V, MOVING>(slot, counts, way) };
             }
             let (kept, first) = (&kept[..block.len()], from == group.slots.start);
             for power in 0..2 {
@@ -105,17 +105,13 @@ pub(crate) unsafe fn scatter<V: Lanes, const MOVING: bool>(
 /// # Safety
 /// As `scatter`.
 #[inline(always)]
-unsafe fn keep<V: Lanes, const MOVING: bool>(
-    slot: &Slot,
-    counts: &Row,
-    velocity: &[Row],
-) -> Kept<V> {
+unsafe fn keep<V: Lanes, const MOVING: bool>(slot: &Slot, counts: &Row, way: &[Row]) -> Kept<V> {
     let counts = V::load(counts);
     let [a, b, c] = &slot.within;
     let brings = match MOVING {
         true => {
             // SAFETY: the caller's promise.
-            let [x, y, z] = unsafe { columns::<V>(velocity, slot.grains) };
+            let [x, y, z] = unsafe { columns::<V>(way, slot.grains) };
             [x * counts, y * counts, z * counts]
         }
         false => [counts; 3],

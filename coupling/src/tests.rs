@@ -77,13 +77,16 @@ fn bed(
 struct Probe<const N: usize> {
     water: Water<N>,
     /// Of the forces on grains and walls, of the pressure on the volume that faces bring, and sizes.
-    powers: Mutex<[f64; 3]>,
+    works: Mutex<[f64; 3]>,
     before: Mutex<Vec<f64>>,
 }
 
 impl<const N: usize> Companion for Probe<N> {
     fn arrange(&mut self, bed: &dem::Bed) -> Result<(), String> {
         self.water.arrange(bed)
+    }
+    fn exchanges(&self, step: u64) -> bool {
+        self.water.exchanges(step)
     }
     fn follow(&self, moved: &Moved, threads: &Threads) {
         *self.before.lock().unwrap() = self.water.collected().to_vec();
@@ -107,22 +110,22 @@ impl<const N: usize> Companion for Probe<N> {
         let mut pushed = vec![Row::ZERO; force.len()];
         self.water.push(moved, threads, own.clone(), &mut pushed);
         let (mut gained, mut size) = (0.0, 0.0);
-        for (push, velocity) in pushed.iter().zip(&moved.velocity[own]) {
-            let power = push.xyz().dot(velocity.xyz());
-            gained += power;
-            size += power.abs();
+        for (push, way) in pushed.iter().zip(&moved.way[own]) {
+            let work = push.xyz().dot(way.xyz());
+            gained += work;
+            size += work.abs();
         }
         for wall in 0..2 {
-            // Force and velocity along the normal are of opposite sense.
-            gained -= self.water.wall_force(wall) * moved.walls[wall].velocity;
+            // Force and way along the normal are of opposite sense.
+            gained -= self.water.wall_force(wall) * moved.wall_ways[wall];
         }
         let before = self.before.lock().unwrap();
         let volumes = self.water.collected().iter().zip(before.iter());
         let pressures = self.water.pressure().iter();
         let lost = pressures
             .zip(volumes)
-            .map(|(p, (now, before))| p * (now - before) / 1e-7);
-        *self.powers.lock().unwrap() = [gained, lost.sum(), size];
+            .map(|(p, (now, before))| p * (now - before));
+        *self.works.lock().unwrap() = [gained, lost.sum(), size];
     }
     fn wall_force(&self, _: usize) -> f64 {
         0.0
@@ -132,10 +135,12 @@ impl<const N: usize> Companion for Probe<N> {
 fn water<const N: usize>(grains: &Solver) -> Water<N> {
     let fluid = Fluid::COLD_WATER;
     let law = Resistance::Darcy(Permeability::constant(1e-12));
-    Water::new(Model::new([6, 6, 5], fluid, law), grains, None).unwrap()
+    let mut model = Model::new([6, 6, 5], fluid, law);
+    model.exchange = Some(1);
+    Water::new(model, grains, None).unwrap()
 }
 
-fn powers_agree<const N: usize>() {
+fn works_agree<const N: usize>() {
     let (model, state) = bed(
         |random| DVec3::new(random(), random(), random()),
         [0.3, -0.2],
@@ -143,36 +148,36 @@ fn powers_agree<const N: usize>() {
     let mut solver = Solver::new(model, state, 1).unwrap();
     let mut probe = Probe {
         water: water::<N>(&solver),
-        powers: Mutex::default(),
+        works: Mutex::default(),
         before: Mutex::default(),
     };
     // Not a step at which loose grains are dragged: drag only takes.
     for step in 1..crate::faces::DRAG_EVERY {
         solver.advance_together(1, &mut probe).unwrap();
-        let [gained, taken, size] = *probe.powers.lock().unwrap();
+        let [gained, taken, size] = *probe.works.lock().unwrap();
         assert!(
-            size > 1.0 && taken.abs() > 1e-3 * size,
-            "{taken} of {size} W"
+            size > 1e-7 && taken.abs() > 1e-3 * size,
+            "{taken} of {size} J"
         );
         // The volumes are differences of sums.
         assert!(
             (gained - taken).abs() < 1e-9 * size,
-            "step {step}: {gained} and {taken} W"
+            "step {step}: {gained} and {taken} J"
         );
     }
     solver.advance_together(1, &mut probe).unwrap();
-    let [gained, taken, size] = *probe.powers.lock().unwrap();
+    let [gained, taken, size] = *probe.works.lock().unwrap();
     assert!(
         gained < taken - 1e-3 * size,
-        "drag of loose grains gives {} W",
+        "drag of loose grains gives {} J",
         gained - taken
     );
 }
 
 #[test]
-fn forces_have_the_power_of_the_pressure_on_the_volume() {
-    powers_agree::<3>();
-    powers_agree::<5>();
+fn forces_do_the_work_of_the_pressure_on_the_volume() {
+    works_agree::<3>();
+    works_agree::<5>();
 }
 
 fn volumes_sum<const N: usize>() {
@@ -193,19 +198,21 @@ fn volumes_of_grains_sum_to_the_volume_in_the_cells() {
 
 fn translation<const N: usize>() {
     let velocity = DVec3::new(0.3, -0.2, 0.1);
-    let (model, state) = bed(|_| velocity, [velocity.z; 2]);
+    let (mut model, state) = bed(|_| velocity, [velocity.z; 2]);
+    // Ways are differences of places, which are rounded by 3e-17 m.
+    model.step = 1e-4;
     let mut solver = Solver::new(model, state, 1).unwrap();
     let mut water = water::<N>(&solver);
     solver.advance_together(1, &mut water).unwrap();
     for (cell, mean) in water.velocities().iter().enumerate() {
         assert!(
-            (mean.xyz() - velocity).length() < 1e-14,
+            (mean.xyz() - velocity).length() < 1e-12,
             "cell {cell}: {mean:?}"
         );
     }
-    let volume = 1e-7 * velocity.length() / 30.0;
+    let volume = 1e-4 * velocity.length() / 30.0;
     let most = water.collected().iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    assert!(most < 1e-14 * volume, "{most:e} of {volume:e} m³");
+    assert!(most < 1e-11 * volume, "{most:e} of {volume:e} m³");
 }
 
 #[test]

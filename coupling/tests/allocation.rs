@@ -43,7 +43,7 @@ fn allocations<const N: usize>(threads: usize, mut water: Model) {
     let finer = N / 2;
     water.cells = water.cells.map(|cells| finer * cells);
     water.interval = Some(1);
-    water.renewal = 1 << 30;
+    water.renewal = Some(1 << 30);
     let model = bed::model(bed::law(), bed::STRESS);
     let mut bed = Coupled::<N>::new(model, bed::pressed(), water, None, threads).unwrap();
     bed.advance(100).unwrap();

@@ -23,6 +23,12 @@ pub(crate) struct Boundary {
     pub driven_force: f64,
     /// Forces of a companion on walls along minus their normals [N].
     pub companion_force: Vec<f64>,
+    /// Step of the last exchange with it; steps that had passed since the one before, and before that.
+    pub exchanged: u64,
+    pub passed: [u64; 2],
+    /// Offsets of the walls at the last exchange [m], and their ways until then.
+    pub left: Vec<f64>,
+    pub ways: Vec<f64>,
     /// Sums of these forces since the solver began.
     pub sums: Sums,
     /// Work on the grains since the solver began [J].
@@ -89,6 +95,28 @@ impl Boundary {
         }
         self.drive_velocity += step * loading.drive_acceleration(self);
         self.add_half_works(loading);
+    }
+
+    /// An exchange with a companion begins: time and ways since the last one.
+    pub fn exchange(&mut self) {
+        let step = self.sums.steps + 1;
+        self.passed = [step - self.exchanged, self.passed[0]];
+        self.exchanged = step;
+        self.leave();
+    }
+
+    /// Ways of the walls begin here.
+    pub fn leave(&mut self) {
+        self.left.resize(self.walls.len(), f64::NAN);
+        self.ways.resize(self.walls.len(), 0.0);
+        for ((wall, left), way) in self.walls.iter().zip(&mut self.left).zip(&mut self.ways) {
+            *way = if left.is_nan() {
+                0.0
+            } else {
+                wall.offset - *left
+            };
+            *left = wall.offset;
+        }
     }
 
     /// Take the forces of the start from the gauges: one for each wall, then the held and

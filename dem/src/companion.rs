@@ -1,11 +1,14 @@
-//! What goes along with the grains and pushes them in every step: pore water, for one.
+//! What goes along with the grains and pushes them: pore water, for one.
 //!
-//! A step of [`Solver::advance_together`] is: grains and walls move; all threads
-//! [`follow`](Companion::follow) them; the companion is [`alone`](Companion::alone) for a moment
-//! if it wants to, and where it is [`due`](Companion::due) for longer and
-//! [`settles`](Companion::settle); then all threads
-//! [`push`](Companion::push), and contacts add their forces. Nothing is copied: a companion reads
-//! the grains where the solver keeps them, and adds to the very sums that move them.
+//! Grains and companion meet at exchanges: every few steps, as the companion says, and at each
+//! neighbour search. In between its forces are held. A step with an exchange is: grains and walls
+//! move; all threads [`follow`](Companion::follow) them; the companion is
+//! [`alone`](Companion::alone) for a moment if it wants to, and where it is
+//! [`due`](Companion::due) for longer, [`settles`](Companion::settle); then all threads
+//! [`push`](Companion::push), and contacts add their forces. A search comes after grains have been
+//! followed in their old order, and before they are pushed in the new one. A companion
+//! reads the grains where the solver keeps them, and is told how far each has moved since
+//! the last exchange: the sum of all drifts, whatever happened in between.
 //!
 //! Where the solver keeps a ledger, the work of the forces on the grains is booked, half of that
 //! of a drift with the forces before it and half with those after it, as that of the walls.
@@ -21,7 +24,7 @@ use glam::DVec3;
 use std::cell::UnsafeCell;
 use std::ops::Range;
 
-/// Something that follows the motion of grains and walls and pushes them in every step.
+/// Something that follows the motion of grains and walls and pushes them.
 ///
 /// Grains are in the solver's order, which changes with each neighbour search. For the same
 /// bits on any number of threads, sums must not depend on how grains are shared out.
@@ -35,18 +38,20 @@ pub trait Companion: Send + Sync {
     /// What makes it impossible to go on.
     fn arrange(&mut self, bed: &Bed) -> Result<(), String>;
 
-    /// Grains and walls have moved: called by all threads. Velocities are those of the way
-    /// just made, half a step behind the positions.
+    /// Is there an exchange in this step (the first one is 1), whether or not there is a search?
+    fn exchanges(&self, step: u64) -> bool;
+
+    /// Grains and walls have moved: called by all threads.
     fn follow(&self, moved: &Moved, threads: &Threads);
 
-    /// Is [`alone`](Self::alone) to be called in this step (the first one is 1)?
+    /// Is [`alone`](Self::alone) to be called at the exchange of this step?
     fn wants_to_be_alone(&self, step: u64) -> bool;
 
     /// Alone, after all have followed, while the threads wait: for what is done often. What goes
-    /// wrong is told in [`settle`](Self::settle).
+    /// wrong is told in [`settle`](Self::settle) or [`arrange`](Self::arrange).
     fn alone(&mut self, moved: &Moved);
 
-    /// Is [`settle`](Self::settle) to be called in this step?
+    /// Is [`settle`](Self::settle) to be called at the exchange of this step?
     fn due(&self, step: u64) -> bool;
 
     /// Alone, between the motion of a step and its forces.
@@ -55,9 +60,10 @@ pub trait Companion: Send + Sync {
     /// What makes it impossible to go on.
     fn settle(&mut self, bed: &Bed) -> Result<(), String>;
 
-    /// Add the forces [N] on the grains `own` to `force`: called by all threads, each with the
-    /// grains that it moves. `moved.step` is 0 for the forces of the instant at which the
-    /// companion joins. Forces along directions that a constraint holds act on its layer.
+    /// Write the forces [N] on the grains `own`, until the next exchange, to `force`, which is zero:
+    /// called by all threads, each with the grains that it moves. `moved.step` is 0 for the
+    /// forces of the instant at which the companion joins. Forces along directions that a
+    /// constraint holds act on its layer.
     fn push(&self, moved: &Moved, threads: &Threads, own: Range<usize>, force: &mut [Row]);
 
     /// The force on a wall along minus its normal [N], positive when it pushes the wall away from
@@ -99,6 +105,9 @@ impl Companion for () {
     fn arrange(&mut self, _: &Bed) -> Result<(), String> {
         Ok(())
     }
+    fn exchanges(&self, _: u64) -> bool {
+        false
+    }
     fn follow(&self, _: &Moved, _: &Threads) {}
     fn wants_to_be_alone(&self, _: u64) -> bool {
         false
@@ -136,14 +145,20 @@ impl Threads<'_> {
     }
 }
 
-/// Where grains and walls have got to in a step. Rows beyond the grains are the solver's own.
+/// Where grains and walls have got to at an exchange. Rows beyond the grains are the solver's own.
 pub struct Moved<'a> {
     /// Number of the step since the solver began, from 1.
     pub step: u64,
+    /// Steps since the last exchange, and from the one before until that; zero where there was none.
+    pub passed: [u64; 2],
     /// Centre [m] and radius [m].
     pub position: &'a [Row],
+    /// Way since the last exchange [m]. After a search it is zero.
+    pub way: &'a [Row],
     /// Velocity half a step ago [m/s].
     pub velocity: &'a [Row],
+    /// Way of the walls along their normals since the last exchange [m].
+    pub wall_ways: &'a [f64],
     /// Walls, velocities half a step ago.
     pub walls: &'a [WallState],
 }
@@ -217,7 +232,47 @@ impl Solver {
 
     /// Work of the companion on the grains since it joined [J]; zero without a ledger.
     pub fn work_of_companion(&self) -> f64 {
-        self.losses().companion
+        self.losses().companion + self.held_work()
+    }
+
+    /// Steps since the last exchange with a companion, ways since then of the grains in the solver's
+    /// order, and of the walls along their normals [m]; none where it has not joined yet.
+    pub fn since_exchange(&self) -> (u64, Vec<Row>, Vec<f64>) {
+        if !self.joined {
+            let walls = vec![0.0; self.boundary.walls.len()];
+            return (0, vec![Row::ZERO; self.sorted.id.len()], walls);
+        }
+        // SAFETY: the solver is not stepping, so nobody writes.
+        let (now, left) = unsafe {
+            let rows = &self.sorted.rows;
+            (rows.position.read(), rows.left.read())
+        };
+        let ways = now[..self.sorted.id.len()].iter().zip(left);
+        let ways = ways.map(|(now, left)| Row::new(now.xyz() - left.xyz(), 0.0));
+        let walls = self.boundary.walls.iter().zip(&self.boundary.left);
+        (
+            self.boundary.sums.steps - self.boundary.exchanged,
+            ways.collect(),
+            walls.map(|(wall, left)| wall.offset - left).collect(),
+        )
+    }
+
+    /// Work since the last exchange of the forces that are held [J].
+    pub(crate) fn held_work(&self) -> f64 {
+        if !self.joined || !self.model.ledger {
+            return 0.0;
+        }
+        // SAFETY: the solver is not stepping, so nobody writes.
+        let (now, left) = unsafe {
+            let rows = &self.sorted.rows;
+            (rows.position.read(), rows.left.read())
+        };
+        let works = self.sorted.slabs.iter().flat_map(|slab| {
+            let places = now[slab.own.clone()].iter().zip(&left[slab.own.clone()]);
+            let pushed = slab.pushed.iter().zip(places);
+            pushed.map(|(pushed, (now, left))| pushed.xyz().dot(now.xyz() - left.xyz()))
+        });
+        works.sum()
     }
 
     /// The grains where the solver keeps them.
@@ -247,7 +302,11 @@ impl Solver {
     /// behind, take half a kick back, as from the other forces of the start.
     fn join<C: Companion>(&mut self, companion: &mut C) -> Result<(), Error> {
         companion.arrange(&self.bed()).map_err(Error::Companion)?;
-        let mut pushes = Vec::new();
+        self.sorted.rows.leave();
+        self.boundary.leave();
+        self.boundary.exchanged = self.boundary.sums.steps;
+        let n = self.sorted.id.len();
+        let mut pushes = vec![Row::ZERO; n];
         {
             let barrier = Barrier::new(1);
             let threads = Threads {
@@ -259,13 +318,14 @@ impl Solver {
             let moved = unsafe {
                 Moved {
                     step: 0,
+                    passed: [0; 2],
                     position: self.sorted.rows.position.read(),
+                    way: self.sorted.rows.way.read(),
                     velocity: self.sorted.rows.velocity.read(),
+                    wall_ways: &self.boundary.ways,
                     walls: &self.boundary.walls,
                 }
             };
-            let n = self.sorted.id.len();
-            pushes.resize(n, Row::ZERO);
             companion.push(&moved, &threads, 0..n, &mut pushes);
         }
         let velocity = self.sorted.rows.velocity.get_mut();
@@ -281,9 +341,7 @@ impl Solver {
                 let back = 0.5 * self.sorted.kick[k] * push;
                 velocity[k] = Row::new(velocity[k].xyz() - back, velocity[k].w());
             }
-            if self.model.ledger {
-                slab.pushed = pushes[slab.own.clone()].to_vec();
-            }
+            slab.pushed = pushes[slab.own.clone()].to_vec();
         }
         for (k, wall) in self.model.walls.iter().enumerate() {
             let force = companion.wall_force(k);

@@ -173,7 +173,7 @@ impl Solver {
         ledger.dissipated_viscosity = loss.viscosity;
         ledger.dissipated_rolling = loss.rolling;
         ledger.work_outside = loss.outside;
-        ledger.work_companion = loss.companion;
+        ledger.work_companion = loss.companion + self.held_work();
         ledger.work_walls = self.boundary.work_walls;
         ledger.work_drive = self.boundary.work_drive;
         ledger.work_gravity -= start.work_gravity;

@@ -41,7 +41,7 @@ pub(crate) struct Slab {
     pub torque: Vec<Row>,
     /// Sum of rolling losses of own grains [J].
     pub rolling_loss: Vec<f64>,
-    /// Forces of a companion on own grains in the last evaluation [N], while its work is booked.
+    /// Forces of a companion on own grains since the last exchange [N]; empty without one.
     pub pushed: Vec<Row>,
     /// Pairs on their way behind those that touch (`regroup.rs`): empty, but for its memory.
     pub apart: Vec<([Place; 2], [Place; 2])>,
@@ -94,47 +94,30 @@ impl Slab {
         (0..count).filter(|slot| touching[slot / 4] >> (slot % 4) & 1 == 1)
     }
 
-    /// Book the half of the last drift's work that the companion's forces before it did, and set
-    /// the sums of forces aside: what is added from now on is the companion's. `velocity` of own
-    /// grains [m/s], `half` a step [s].
-    pub fn set_aside(&mut self, velocity: &[Row], half: f64) {
-        self.pushed.resize(velocity.len(), Row::ZERO);
-        self.book(velocity, half, |pushed, force| (*pushed, *force));
-    }
-
-    /// Take what has been added as the companion's forces, and book the other half of the work.
-    pub fn take_pushed(&mut self, velocity: &[Row], half: f64) {
-        self.book(velocity, half, |aside, force| {
-            let mut pushed = Row::ZERO;
+    /// Add the forces of a companion to the sums.
+    pub fn add_pushed(&mut self) {
+        for (force, pushed) in self.force.iter_mut().zip(&self.pushed) {
             for lane in 0..4 {
-                pushed.0[lane] = force.0[lane] - aside.0[lane];
+                force.0[lane] += pushed.0[lane];
             }
-            (pushed, pushed)
-        });
+        }
     }
 
-    /// Book the work of the companion's forces over half of a drift with these velocities.
-    pub fn book_companion(&mut self, velocity: &[Row], half: f64) {
-        self.book(velocity, half, |pushed, _| (*pushed, *pushed));
-    }
-
-    /// Book the work of what `take` makes of what is kept of a companion and of the sums of forces,
-    /// and keep what else it gives.
-    #[inline(always)]
-    fn book(&mut self, velocity: &[Row], half: f64, take: impl Fn(&Row, &Row) -> (Row, Row)) {
-        let forces = self.force.chunks(BLOCK).zip(velocity.chunks(BLOCK));
-        let blocks = self.pushed.chunks_mut(BLOCK).zip(forces);
-        for (loss, (pushed, (force, velocity))) in self.losses.iter_mut().zip(blocks) {
+    /// Book the work of a companion's forces on sums of two rows of own grains: ways, once
+    /// multiplied by `factors` [m].
+    pub fn book_companion(&mut self, rows: [&[Row]; 2], factors: [f64; 2]) {
+        let rows = rows[0].chunks(BLOCK).zip(rows[1].chunks(BLOCK));
+        let blocks = self.pushed.chunks(BLOCK).zip(rows);
+        for (loss, (pushed, (a, b))) in self.losses.iter_mut().zip(blocks) {
             // Lane by lane: the compiler takes several at once.
-            let mut power = [0.0; 4];
-            for ((pushed, force), velocity) in pushed.iter_mut().zip(force).zip(velocity) {
-                let (works, kept) = take(pushed, force);
-                for (lane, power) in power.iter_mut().enumerate() {
-                    *power += works.0[lane] * velocity.0[lane];
+            let mut work = [0.0; 4];
+            for ((pushed, a), b) in pushed.iter().zip(a).zip(b) {
+                for (lane, work) in work.iter_mut().enumerate() {
+                    let way = factors[0] * a.0[lane] + factors[1] * b.0[lane];
+                    *work += pushed.0[lane] * way;
                 }
-                *pushed = kept;
             }
-            loss.companion += half * (power[0] + power[1] + power[2]);
+            loss.companion += work[0] + work[1] + work[2];
         }
     }
 

@@ -284,6 +284,9 @@ impl Solver {
                 Stop::Done => {}
                 Stop::Search { speed } => {
                     self.search(speed)?;
+                    if C::ACTIVE {
+                        self.sorted.rows.leave();
+                    }
                     companion
                         .arrange(&self.bed_after(1))
                         .map_err(Error::Companion)?;
@@ -293,7 +296,7 @@ impl Solver {
                     companion
                         .settle(&self.bed_after(1))
                         .map_err(Error::Companion)?;
-                    stage = Stage::Followed;
+                    stage = Stage::Moved;
                 }
             }
         }
@@ -369,13 +372,6 @@ impl Solver {
             let mean_radius = self.mean_radius();
             let skin = self.skin * (SEARCH_EVERY / since).clamp(0.5, 2.0);
             self.skin = skin.clamp(SKIN_RANGE[0] * mean_radius, SKIN_RANGE[1] * mean_radius);
-        }
-        // What a companion pushed with before this drift; its order is about to change.
-        let half = 0.5 * self.model.step;
-        // SAFETY: the solver is not stepping, so nobody writes.
-        let velocity = unsafe { self.sorted.rows.velocity.read() };
-        for slab in &mut self.sorted.slabs {
-            slab.book_companion(&velocity[slab.own.clone()], half);
         }
         self.loss = self.losses();
         let outside = self.outside.take().map(|rows| self.by_identity(&rows));

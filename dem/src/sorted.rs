@@ -131,6 +131,8 @@ impl Sorted {
             spin: spinning(|g| Row::new(g.spin, g.radius), &resting),
             turned: spinning(|g| Row::new(g.turned, 0.0), &[]),
             orientation: Shared::new(grains.iter().map(|g| g.orientation).collect()),
+            left: Shared::new(Vec::new()),
+            way: Shared::new(Vec::new()),
         };
 
         let mut place = vec![0u32; n];
@@ -235,7 +237,10 @@ impl Sorted {
             + size_of::<Constraint>()
             + 4
             + 8 * if spins { 4 } else { 3 };
-        self.id.len() * grain + self.slabs.iter().map(Slab::bytes).sum::<usize>()
+        // SAFETY: lengths do not change while the solver steps.
+        let along =
+            unsafe { size_of_val(self.rows.left.read()) + size_of_val(self.rows.way.read()) };
+        along + self.id.len() * grain + self.slabs.iter().map(Slab::bytes).sum::<usize>()
     }
 }
 

@@ -22,6 +22,19 @@ pub(crate) struct Rows {
     pub spin: Shared<Row>,
     pub turned: Shared<Row>,
     pub orientation: Shared<DQuat>,
+    /// Where grains were at the last exchange with a companion, and how far they have got until the
+    /// present one [m]; empty without one.
+    pub left: Shared<Row>,
+    pub way: Shared<Row>,
+}
+
+impl Rows {
+    /// Ways of all grains begin here.
+    pub fn leave(&mut self) {
+        let position = self.position.get_mut().to_vec();
+        self.way = Shared::new(vec![Row::ZERO; position.len()]);
+        self.left = Shared::new(position);
+    }
 }
 
 /// Forces that are summed over walls and layers: one array each.
@@ -66,10 +79,8 @@ pub(crate) enum Stop {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stage {
     Begun,
-    /// Grains and walls have moved.
+    /// Grains and walls have moved, and a companion has followed them.
     Moved,
-    /// The companion has followed them.
-    Followed,
 }
 
 impl Crew<'_> {
@@ -85,74 +96,39 @@ impl Crew<'_> {
         companion: &Beside<C>,
     ) -> (Boundary, Stop) {
         let _guard = self.barrier.guard();
-        let step = self.loading.model.step;
+        let threads = Threads {
+            index: thread,
+            count: self.speeds.len(),
+            barrier: self.barrier,
+        };
         while boundary.sums.steps < until {
+            // A step that goes on from here had an exchange, if there is a companion.
+            let mut exchanges = C::ACTIVE && stage == Stage::Moved;
             if stage == Stage::Begun {
-                boundary.advance(self.loading);
-                let speed = self.move_own(slab, &boundary);
-                self.speeds[thread].store(speed.to_bits(), Ordering::Relaxed);
-                self.barrier.wait();
-                let speeds = self.speeds.iter();
-                let speed = speeds
-                    .map(|bits| f64::from_bits(bits.load(Ordering::Relaxed)))
-                    .fold(boundary.wall_speed(), f64::max);
-                boundary.travel += speed * step;
-                if boundary.travel > self.reach || boundary.travel.is_nan() {
-                    return (boundary, Stop::Search { speed });
+                // SAFETY: nobody is alone with it before all have met.
+                exchanges = unsafe { companion.shared() }.exchanges(boundary.sums.steps + 1);
+                if let Some(stop) =
+                    self.begin(slab, &mut boundary, &threads, &mut exchanges, companion)
+                {
+                    return (boundary, stop);
                 }
             }
-            if C::ACTIVE {
-                let threads = Threads {
-                    index: thread,
-                    count: self.speeds.len(),
-                    barrier: self.barrier,
-                };
-                let moved = Moved {
-                    step: boundary.sums.steps + 1,
-                    // SAFETY: rows are written before the last barrier, and next after another.
-                    position: unsafe { self.rows.position.read() },
-                    // SAFETY: as above.
-                    velocity: unsafe { self.rows.velocity.read() },
-                    walls: &boundary.walls,
-                };
-                if stage != Stage::Followed {
-                    // SAFETY: nobody is alone with it before all have met.
-                    let wants = unsafe {
-                        companion.shared().follow(&moved, &threads);
-                        companion.shared().wants_to_be_alone(moved.step)
-                    };
-                    if wants {
-                        self.barrier.wait();
-                        if thread == 0 {
-                            // SAFETY: the others wait for this one.
-                            unsafe { companion.alone().alone(&moved) };
-                        }
-                        self.barrier.wait();
-                    }
-                    // SAFETY: as above.
-                    if unsafe { companion.shared().due(moved.step) } {
-                        return (boundary, Stop::Due);
-                    }
+            let step = self.loading.model.step;
+            self.push_own(slab, &boundary, step, |slab| {
+                if exchanges {
+                    // SAFETY: nobody is alone with it, nobody writes rows before the next barrier.
+                    let (companion, moved) = unsafe { (companion.shared(), self.moved(&boundary)) };
+                    self.take_pushes(slab, &threads, companion, &moved);
                 }
-                // SAFETY: as above.
-                let companion = unsafe { companion.shared() };
-                self.push_own(slab, &boundary, step, |slab| {
-                    let own = slab.own.clone();
-                    let velocity = &moved.velocity[own.clone()];
-                    let books = self.loading.model.ledger;
-                    if books {
-                        slab.set_aside(velocity, 0.5 * step);
-                    }
-                    companion.push(&moved, &threads, own, &mut slab.force[..velocity.len()]);
-                    if books {
-                        slab.take_pushed(velocity, 0.5 * step);
-                    }
-                });
+                if C::ACTIVE {
+                    slab.add_pushed();
+                }
+            });
+            if exchanges {
                 for (k, force) in boundary.companion_force.iter_mut().enumerate() {
-                    *force = companion.wall_force(k);
+                    // SAFETY: as above.
+                    *force = unsafe { companion.shared() }.wall_force(k);
                 }
-            } else {
-                self.push_own(slab, &boundary, step, |_| {});
             }
             stage = Stage::Begun;
             self.barrier.wait();
@@ -161,6 +137,129 @@ impl Crew<'_> {
             boundary.read(self.loading, &self.gauges.ranges, values);
         }
         (boundary, Stop::Done)
+    }
+
+    /// Motion of grains and walls, and what the companion does before it pushes, if it `exchanges`
+    /// in this step. A search makes it exchange.
+    fn begin<C: Companion>(
+        &self,
+        slab: &mut Slab,
+        boundary: &mut Boundary,
+        threads: &Threads,
+        exchanges: &mut bool,
+        companion: &Beside<C>,
+    ) -> Option<Stop> {
+        let step = self.loading.model.step;
+        boundary.advance(self.loading);
+        let speed = self.move_own(slab, boundary);
+        self.speeds[threads.index].store(speed.to_bits(), Ordering::Relaxed);
+        if *exchanges {
+            self.measure_ways(slab);
+        }
+        self.barrier.wait();
+        let speeds = self.speeds.iter();
+        let speed = speeds
+            .map(|bits| f64::from_bits(bits.load(Ordering::Relaxed)))
+            .fold(boundary.wall_speed(), f64::max);
+        boundary.travel += speed * step;
+        let search = boundary.travel > self.reach || boundary.travel.is_nan();
+        if C::ACTIVE && search && !*exchanges {
+            *exchanges = true;
+            self.measure_ways(slab);
+            self.barrier.wait();
+        }
+        if *exchanges {
+            boundary.exchange();
+            let now = boundary.sums.steps + 1;
+            // SAFETY: rows are written before the last barrier, and next after another; nobody is
+            // alone with the companion before all have met.
+            let (moved, wants) = unsafe {
+                let moved = self.moved(boundary);
+                companion.shared().follow(&moved, threads);
+                (moved, companion.shared().wants_to_be_alone(now))
+            };
+            if wants {
+                self.barrier.wait();
+                if threads.index == 0 {
+                    // SAFETY: the others wait for this one.
+                    unsafe { companion.alone().alone(&moved) };
+                }
+                self.barrier.wait();
+            }
+        }
+        if search {
+            return Some(Stop::Search { speed });
+        }
+        // SAFETY: as above.
+        let due = *exchanges && unsafe { companion.shared().due(boundary.sums.steps + 1) };
+        due.then_some(Stop::Due)
+    }
+
+    /// What a companion is told.
+    ///
+    /// # Safety
+    /// Nobody writes rows meanwhile.
+    unsafe fn moved<'a>(&'a self, boundary: &'a Boundary) -> Moved<'a> {
+        // SAFETY: the caller's promise.
+        let (position, way, velocity) = unsafe {
+            (
+                self.rows.position.read(),
+                self.rows.way.read(),
+                self.rows.velocity.read(),
+            )
+        };
+        Moved {
+            step: boundary.sums.steps + 1,
+            passed: boundary.passed,
+            position,
+            way,
+            velocity,
+            wall_ways: &boundary.ways,
+            walls: &boundary.walls,
+        }
+    }
+
+    /// How far own grains have got since the last exchange, and the work of what has pushed them:
+    /// of the last drift half, the other half is done by what will.
+    fn measure_ways(&self, slab: &mut Slab) {
+        let range = slab.own.clone();
+        // SAFETY: between the barriers only this thread touches its own grains.
+        let (position, velocity, left, way) = unsafe {
+            (
+                &self.rows.position.read()[range.clone()],
+                &self.rows.velocity.read()[range.clone()],
+                self.rows.left.write(range.clone()),
+                self.rows.way.write(range),
+            )
+        };
+        for ((way, left), now) in way.iter_mut().zip(left).zip(position) {
+            for lane in 0..4 {
+                way.0[lane] = now.0[lane] - left.0[lane];
+            }
+            *left = *now;
+        }
+        if self.loading.model.ledger {
+            let half = 0.5 * self.loading.model.step;
+            slab.book_companion([&way[..], velocity], [1.0, -half]);
+        }
+    }
+
+    /// The forces with which a companion pushes own grains from now on.
+    fn take_pushes<C: Companion>(
+        &self,
+        slab: &mut Slab,
+        threads: &Threads,
+        companion: &C,
+        moved: &Moved,
+    ) {
+        let own = slab.own.clone();
+        slab.pushed.clear();
+        slab.pushed.resize(own.len(), Row::ZERO);
+        companion.push(moved, threads, own.clone(), &mut slab.pushed);
+        if self.loading.model.ledger {
+            let velocity = &moved.velocity[own];
+            slab.book_companion([velocity; 2], [0.5 * self.loading.model.step, 0.0]);
+        }
     }
 
     /// Kick and drift of own grains.

@@ -1,7 +1,9 @@
 //! The solver of a run, on whichever machine: all that the rest of the program knows of it.
 
+mod ahead;
 mod wet;
 
+pub use ahead::see_water;
 pub use wet::{Wet, stiffness};
 
 use crate::backend::Machine;

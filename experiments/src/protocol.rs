@@ -138,13 +138,44 @@ pub fn start_height(scene: &Scene) -> f64 {
 /// Height that the bed will have once it carries a load [m], as far as it can be guessed: that of
 /// a state as it is, that of other grains at a solid fraction of 0.6.
 pub fn expected_height(scene: &Scene) -> f64 {
-    let start = &scene.start;
-    if !start.contacts.is_empty() {
+    if !scene.start.contacts.is_empty() {
         return start_height(scene);
     }
+    settled_height(&scene.start, scene.domain.area())
+}
+
+fn settled_height(start: &State, area: f64) -> f64 {
     let grains = &start.grains;
     let volume: f64 = (0..grains.len()).map(|k| grains.volume(k)).sum();
-    volume / (SETTLED * scene.domain.area())
+    volume / (SETTLED * area)
+}
+
+/// Height from wall to wall [m] over `area` [m²] when water comes to what begins as `start`: that
+/// of the top wall, held or moved as the `phases` say, or of a settled bed where it is pushed onto
+/// the grains. That of a state is as it is.
+pub fn height_when_wet(phases: &[Phase], start: &State, area: f64) -> f64 {
+    let mut height = -start.walls[TOP].offset;
+    if !start.contacts.is_empty() {
+        return height;
+    }
+    let settled = settled_height(start, area);
+    for phase in phases {
+        let wet = phase.water.is_some();
+        match phase.top {
+            WallMotion::Stress(_) => return settled,
+            WallMotion::Velocity(down) if !wet => height -= down * phase.end.duration,
+            WallMotion::Velocity(_) | WallMotion::Held => {}
+        }
+        if wet {
+            break;
+        }
+    }
+    // A wall that moves for an unknown time stops at the grains.
+    if height.is_finite() {
+        height.max(settled)
+    } else {
+        settled
+    }
 }
 
 /// Way of the driven layer along x [m], the mean of its grains; zero without one.

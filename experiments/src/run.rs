@@ -11,7 +11,7 @@ pub(crate) mod water;
 pub use summary::{Outcome, PhaseSummary, Summary};
 
 use crate::backend::{Backend, Chosen, Machine};
-use crate::engine::Engine;
+use crate::engine::{Engine, see_water};
 use crate::output::pores::Cells;
 use crate::output::state::Saved;
 use crate::output::{self, FileKind, Header, Plan, Writer};
@@ -163,6 +163,9 @@ pub(crate) fn check_room(out: &Path, force: bool) -> Result<()> {
 
 /// See that the first phase can begin: what is refused here costs no old results.
 fn check_start(scene: &Scene, machine: &Machine) -> Result<()> {
+    if let Machine::Gpu(device) = machine {
+        see_water(scene, &device.adapter)?;
+    }
     let phase = &scene.phases[0];
     let reference = scene.past.reference_of(phase);
     let Prepared { model, state, .. } =

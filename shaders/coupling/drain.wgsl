@@ -3,6 +3,10 @@
 
 #import coupling::numbers::{numbers, course, is_made, thread, at_cell}
 #import coupling::pressure::{content, collected, bed}
+#ifdef THROUGH
+#import coupling::pressure::contents
+#import lbm::setting::as_rounded
+#endif
 #ifdef CAVITATION
 #import coupling::pressure::{least, vapour}
 #endif
@@ -13,6 +17,11 @@
 @group(0) @binding(1) var<storage, read_write> sources: array<f32>;
 // 0: the lattice is to make no step, since the grains have made none.
 @group(0) @binding(2) var<storage, read_write> guard: array<u32>;
+#ifdef THROUGH
+// Both walls are open. What has flowed upward through each cell [m], and what this sum has rounded
+// off so far.
+@group(0) @binding(3) var<storage, read_write> through: array<vec2<f32>>;
+#endif
 
 @compute @workgroup_size(64)
 fn drain(
@@ -28,6 +37,13 @@ fn drain(
     if !going || cell >= numbers.count {
         return;
     }
+#ifdef THROUGH
+    // With the flux at the end of the step before; the host adds that of the last one.
+    let own = through[cell];
+    let way = contents[cell].z * course[0].speed * course[0].passed - own.y;
+    let sum = as_rounded(own.x + way);
+    through[cell] = vec2<f32>(sum, as_rounded(sum - own.x) - way);
+#endif
     let at = at_cell(cell);
     let gone = collected[cell];
     var opens = 0.0;

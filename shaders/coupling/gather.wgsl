@@ -1,23 +1,22 @@
 // From the faces to the grains: the transpose of the scatter. One thread a grain. Twin of `gather` in
 // coupling/src/faces.rs.
 //
-// gather   what pushes each grain in a step
+// gather   what pushes each grain until the next exchange, and that the walls are pushed so, too
 // grip     (renewal) the part of its drag that faces along each axis take
 
-#import dem::scene::Motion
 #import dem::control::control
-#import coupling::numbers::{numbers, step_of, is_made, renews, drags, thread, at_cell, cell_at}
+#import coupling::numbers::{numbers, course, step_of, is_made, renews, drags, thread, at_cell, cell_at, KEPT}
 #import coupling::sums::beside
 #import coupling::kernel::weights
+#import dem::boundary::hold_companion
 
 @group(0) @binding(0) var<uniform> tick: u32;
-@group(0) @binding(1) var<storage, read> motions: array<Motion>;
-// Of each grain: where it is in its cell, and the cell; w V [m^3], γ [N s/m], lift [N], and what is
-// the renewal's; grip along x, y and z.
 @group(0) @binding(2) var<storage, read_write> kept: array<vec4<u32>>;
 @group(0) @binding(3) var<storage, read> pushes: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> easing: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> companions: array<vec4<f32>>;
+// What the walls do not feel of the force [N], by number of the step in a group: bottom, top.
+@group(0) @binding(6) var<storage, read> taken_off: array<vec2<f32>>;
 
 // Sum of what faces have, times the weights; `eased`: of `easing` instead of `pushes`.
 fn sum_of(touch: vec4<u32>, eased: bool) -> vec3<f32> {
@@ -62,17 +61,23 @@ fn gather(
     @builtin(local_invocation_index) local: u32,
 ) {
     let g = thread(group, groups, local);
-    if !is_made(tick) || g >= numbers.grains {
+    if !is_made(tick) {
         return;
     }
-    let touch = kept[3u * g];
-    let own = bitcast<vec4<f32>>(kept[3u * g + 1u]);
+    if g < 2u {
+        hold_companion(numbers.walls[g], step_of(tick), numbers.shares[g], taken_off[tick][g]);
+    }
+    if g >= numbers.grains {
+        return;
+    }
+    let touch = kept[KEPT * g];
+    let own = bitcast<vec4<f32>>(kept[KEPT * g + 1u]);
     var force = own.x * sum_of(touch, false) + vec3<f32>(0.0, 0.0, own.z);
     let step = step_of(tick);
     if drags(step) && own.y > 0.0 {
-        let velocity = motions[(step & 1u) * numbers.grains + g].velocity;
-        let grip = bitcast<vec3<f32>>(kept[3u * g + 2u].xyz);
-        force += own.y * (sum_of(touch, true) - grip * velocity);
+        let velocity = bitcast<vec3<f32>>(kept[KEPT * g + 5u].xyz);
+        let grip = bitcast<vec3<f32>>(kept[KEPT * g + 2u].xyz);
+        force += course[0].share * own.y * (sum_of(touch, true) - grip * velocity);
     }
     companions[g] = vec4<f32>(force, 0.0);
 }
@@ -85,7 +90,7 @@ fn grip(
 ) {
     let g = thread(group, groups, local);
     if renews() && g < numbers.grains {
-        let gripped = sum_of(kept[3u * g], true);
-        kept[3u * g + 2u] = vec4<u32>(bitcast<vec3<u32>>(gripped), 0u);
+        let gripped = sum_of(kept[KEPT * g], true);
+        kept[KEPT * g + 2u] = vec4<u32>(bitcast<vec3<u32>>(gripped), 0u);
     }
 }

@@ -35,7 +35,11 @@ struct Course {
     renew_at: u32,     // the step at which weights are renewed
     memory: f32,       // share of the present load in the mean one
     stretch: f32,      // height of a cell of the lattice over the spacing
-    unused: u32,
+    passed: f32,       // s; from one step of the fluid to the next
+    exchange: u32,     // steps from one exchange to the next
+    drag_every: u32,   // steps from one drag of loose grains to the next, a multiple of these
+    share: f32,        // part of a drag that each of the steps until the next exchange takes
+    towed: f32,        // part of their drag that loose grains get
 }
 
 // Of the bed at the last renewal.
@@ -54,9 +58,10 @@ struct Span {
 @group(0) @binding(72) var<storage, read_write> span: array<Span>;
 
 const THREADS: u32 = 64u;
-// Steps between two drags of loose grains.
-const DRAG_EVERY: u32 = 4u;
-
+// Vectors that are kept for each grain: where it is in its cell, and the cell; w V [m^3], γ [N s/m],
+// lift [N], and what is the renewal's; grip along x, y and z; where it was at the last exchange,
+// whole units and parts; its mean velocity [m/s] from the one before until then.
+const KEPT: u32 = 6u;
 // Number of a thread in a dispatch over many workgroups.
 fn thread(group: vec3<u32>, groups: vec3<u32>, local: u32) -> u32 {
     return (group.x + group.y * groups.x) * THREADS + local;
@@ -77,8 +82,10 @@ fn renews() -> bool {
     return control.base == course[0].renew_at && atomicLoad(&control.flags) == 0u;
 }
 
+// Are loose grains dragged at the exchange of this step? Not with weights that faces had not when
+// they took.
 fn drags(step: u32) -> bool {
-    return step > 0u && step % DRAG_EVERY == 0u;
+    return step > 0u && step % course[0].drag_every == 0u && step != course[0].renew_at;
 }
 
 // Where cell `cell` lies: x fastest, then y, then z.

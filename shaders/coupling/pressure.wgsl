@@ -1,10 +1,11 @@
-// The pressure that grains feel, undrained since the last step of the lattice.
+// The pressure, undrained since the last step of the lattice.
 
 #define_import_path coupling::pressure
 #import coupling::numbers::{numbers, span, at_cell}
 
 // Flux of the lattice along x, y and z, and content; lattice units.
 @group(0) @binding(22) var<storage, read> contents: array<vec4<f32>>;
+// ∫Q dt since the last step of the lattice [m^3].
 @group(0) @binding(23) var<storage, read_write> collected: array<f32>;
 // Of a cell: volume of solid [m^3], permeability [m^2], 1/(β V_p) [Pa/m^3], porosity.
 @group(0) @binding(24) var<storage, read_write> bed: array<vec4<f32>>;

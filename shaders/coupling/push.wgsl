@@ -4,10 +4,10 @@
 // push   pressure differences, over the weights of the faces
 // widen  (wide kernel) the filter of the scatter, transposed: it is its own
 
-#import coupling::numbers::{numbers, span, step_of, is_made, drags, thread, at_cell, cell_at, last}
-#import coupling::pressure::{pressure, bed}
+#import coupling::numbers::{numbers, span, step_of, is_made, drags, thread, at_cell, cell_at, last, THREADS}
 #import coupling::smooth::smoothed
-#import dem::boundary::{reliefs, WALLS, COMPANION}
+#import dem::boundary::COMPANION
+#import coupling::walls::{move_walls, leave_walls}
 #import dem::scene::scene
 #import dem::control::{control, UNSTABLE, FULL}
 #import dem::wide::{Wide, widen as wide_of, carry, fits, in_range, add_to_sum}
@@ -17,13 +17,11 @@
 @group(0) @binding(2) var<storage, read> velocities: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> ease: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> reactions: array<vec4<f32>>;
-// Pressure that grains feel [Pa], for readings.
-@group(0) @binding(5) var<storage, read_write> pressures: array<f32>;
+// Pressure that grains feel [Pa].
+@group(0) @binding(5) var<storage, read> pressures: array<f32>;
 // What faces push with per w V K, and s_f v_f.
 @group(0) @binding(6) var<storage, read_write> pushes: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> easing: array<vec4<f32>>;
-// What the walls do not feel of the force [N], by number of the step in a group: bottom, top.
-@group(0) @binding(8) var<storage, read> taken_off: array<vec2<f32>>;
 #ifdef WIDE
 @group(0) @binding(9) var<storage, read> wall_shares: array<vec2<f32>>;
 #endif
@@ -57,22 +55,24 @@ fn push(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    if local < 4u {
-        atomicStore(&gathered[local], 0u);
-    }
-    workgroupBarrier();
     let going = is_made(tick);
     let step = step_of(tick);
     let cell = thread(group, groups, local);
+    if local < 4u {
+        atomicStore(&gathered[local], 0u);
+    }
+    if going && cell < THREADS {
+        move_walls(local, step);
+    }
+    workgroupBarrier();
     if going && cell < numbers.count {
         let at = at_cell(cell);
-        let p = pressure(cell);
-        pressures[cell] = p;
-        let left = pressure(cell_at(vec3<u32>(last(at.x, numbers.cells.x), at.yz)));
-        let front = pressure(cell_at(vec3<u32>(at.x, last(at.y, numbers.cells.y), at.z)));
+        let p = pressures[cell];
+        let left = pressures[cell_at(vec3<u32>(last(at.x, numbers.cells.x), at.yz))];
+        let front = pressures[cell_at(vec3<u32>(at.x, last(at.y, numbers.cells.y), at.z))];
         var below = p;
         if at.z > 0u {
-            below = pressure(cell_at(at - vec3<u32>(0u, 0u, 1u)));
+            below = pressures[cell_at(at - vec3<u32>(0u, 0u, 1u))];
         }
         let side = numbers.spacing * span[0].height;
         let floor = numbers.spacing * numbers.spacing;
@@ -103,15 +103,13 @@ fn push(
         gather(0u, on_walls.x * scene.force_scale);
         gather(1u, on_walls.y * scene.force_scale);
         if cell == 0u {
-            for (var k = 0u; k < 2u; k++) {
-                reliefs[(step % 3u) * WALLS + numbers.walls[k]] = vec2<f32>(numbers.shares[k], taken_off[tick][k]);
-            }
+            leave_walls();
         }
     }
     workgroupBarrier();
     if local < 2u && going {
         let w = Wide(bitcast<i32>(atomicLoad(&gathered[2u * local])), atomicLoad(&gathered[2u * local + 1u]));
-        if (w.hi != 0 || w.lo != 0u) && !add_to_sum(COMPANION + (step % 3u) * WALLS + numbers.walls[local], w) {
+        if (w.hi != 0 || w.lo != 0u) && !add_to_sum(COMPANION + numbers.walls[local], w) {
             atomicOr(&control.flags, FULL);
         }
     }

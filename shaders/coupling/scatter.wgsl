@@ -10,12 +10,19 @@
 //   DRAGS      γ            of loose grains
 //   PACES      γ ν T
 //   DEPOSIT    V            to the 27 cells around
-//   MOVES      times the velocity, in a step; with (none) and DRAGS
+//   MOVES      w V times the mean velocity since the last exchange, in one; the next way begins
+//     DRAGS    and γ times that beside
+//     LOOKS    for who reads: no way begins
 //
 // `faces.wgsl` adds up what the cells have left in `shares`.
 
 #import dem::scene::Motion
-#import coupling::numbers::{numbers, is_made, renews, ball}
+#ifdef MOVES
+#import dem::scene::scene
+#import dem::fixed::{Place, displacement}
+#import coupling::times::rate_until
+#endif
+#import coupling::numbers::{numbers, is_made, renews, ball, KEPT}
 #import coupling::kernel::{of_cell, of_face, value}
 #import dem::control::control
 
@@ -31,6 +38,30 @@
 @group(0) @binding(5) var<storage, read> slot_drags: array<vec2<f32>>;
 // 54 numbers a cell.
 @group(0) @binding(6) var<storage, read_write> shares: array<f32>;
+#ifdef MOVES
+@group(0) @binding(7) var<storage, read> places: array<Place>;
+@group(0) @binding(8) var<storage, read_write> kept: array<vec4<u32>>;
+
+// Mean velocity of the grain of a row since the last exchange [m/s]. Each grain is in one list.
+fn velocity_of(g: u32, step: u32) -> vec3<f32> {
+    let velocity = found(g, step);
+#ifndef LOOKS
+    let place = places[(step & 1u) * numbers.grains + g];
+    kept[KEPT * g + 3u] = vec4<u32>(bitcast<vec3<u32>>(place.hi), 0u);
+    kept[KEPT * g + 4u] = vec4<u32>(place.lo, 0u);
+    kept[KEPT * g + 5u] = vec4<u32>(bitcast<vec3<u32>>(velocity), 0u);
+#endif
+    return velocity;
+}
+
+fn found(g: u32, step: u32) -> vec3<f32> {
+    let place = places[(step & 1u) * numbers.grains + g];
+    let hi = bitcast<vec3<i32>>(kept[KEPT * g + 3u].xyz);
+    let lo = kept[KEPT * g + 4u].xyz;
+    let way = displacement(place.hi, place.lo, hi, lo, scene.length) * numbers.unit;
+    return rate_until(step) * way;
+}
+#endif
 
 const THREADS: u32 = 64u;
 const FACES: u32 = 54u;
@@ -66,10 +97,16 @@ fn cell(n: u32) -> Node {
     return Node(of_cell(n % 3u), of_cell(n / 3u % 3u), of_cell(n / 9u), 0u);
 }
 
+#ifdef MOVES
+#ifdef DRAGS
+@group(0) @binding(9) var<storage, read_write> drag_shares: array<f32>;
+var<workgroup> drags: array<vec3<f32>, 64>;
+#endif
+#else
 // What the grain in `slot` is counted with.
 fn amount(slot: u32) -> vec3<f32> {
-    let row = ((control.base + tick) & 1u) * numbers.grains + slot_rows[slot];
 #ifdef DEPOSIT
+    let row = (control.base & 1u) * numbers.grains + slot_rows[slot];
     return vec3<f32>(ball(motions[row].radius));
 #else
 #ifdef PACES
@@ -81,13 +118,10 @@ fn amount(slot: u32) -> vec3<f32> {
     let weight = slots[slot].w;
 #endif
 #endif
-#ifdef MOVES
-    return weight * motions[row].velocity;
-#else
     return vec3<f32>(weight);
 #endif
-#endif
 }
+#endif
 
 @compute @workgroup_size(64)
 fn scatter(
@@ -116,21 +150,40 @@ fn scatter(
     let node = face(min(local, nodes - 1u));
 #endif
     var sum = 0.0;
+    var drag = 0.0;
     for (var first = slice.x; first < slice.y; first += THREADS) {
         let slot = first + local;
         if slot < slice.y {
             within[local] = slots[slot].xyz;
+#ifdef MOVES
+            let velocity = velocity_of(slot_rows[slot], control.base + tick);
+            amounts[local] = slots[slot].w * velocity;
+#ifdef DRAGS
+            drags[local] = slot_drags[slot].x * velocity;
+#endif
+#else
             amounts[local] = amount(slot);
+#endif
         }
         workgroupBarrier();
         for (var k = 0u; k < min(THREADS, slice.y - first); k++) {
             let t = within[k];
             let weight = value(node.x, t.x) * value(node.y, t.y) * value(node.z, t.z);
             sum += weight * amounts[k][node.lane];
+#ifdef MOVES
+#ifdef DRAGS
+            drag += weight * drags[k][node.lane];
+#endif
+#endif
         }
         workgroupBarrier();
     }
     if going && local < nodes && own < numbers.count {
         shares[FACES * own + local] = sum;
+#ifdef MOVES
+#ifdef DRAGS
+        drag_shares[FACES * own + local] = drag;
+#endif
+#endif
     }
 }

@@ -12,7 +12,7 @@
 #import dem::scene::{scene, Motion, Own}
 #import dem::control::control
 #import dem::search::plan::grid
-#import coupling::numbers::{numbers, span, renews, thread, cell_at, cell_volume, ball, DRAG_EVERY}
+#import coupling::numbers::{numbers, course, span, renews, thread, cell_at, cell_volume, ball, KEPT}
 #import coupling::resistance::resistance
 
 @group(0) @binding(0) var<storage, read> places: array<Place>;
@@ -110,8 +110,11 @@ fn touch_down(
     let buoyant = abs(mass - numbers.density * volume) * abs(numbers.gravity);
     let counts = weight(mean_loads[me.id], buoyant);
     let lift = -numbers.density * numbers.gravity * volume;
-    kept[3u * g] = vec4<u32>(bitcast<vec3<u32>>(vec3<f32>(x.within, y.within, z.within)), cell);
-    kept[3u * g + 1u] = bitcast<vec4<u32>>(vec4<f32>(counts * volume, 0.0, lift, 1.0 - counts));
+    kept[KEPT * g] = vec4<u32>(bitcast<vec3<u32>>(vec3<f32>(x.within, y.within, z.within)), cell);
+    kept[KEPT * g + 1u] = bitcast<vec4<u32>>(vec4<f32>(counts * volume, 0.0, lift, 1.0 - counts));
+    // In a renewal an exchange has just been made, but for the first one.
+    kept[KEPT * g + 3u] = vec4<u32>(bitcast<vec3<u32>>(place.hi), 0u);
+    kept[KEPT * g + 4u] = vec4<u32>(place.lo, 0u);
     atomicAdd(&starts[cell], 1u);
 }
 
@@ -123,7 +126,7 @@ fn place_in(
 ) {
     let g = thread(group, groups, local);
     if renews() && g < numbers.grains {
-        let cell = kept[3u * g].w;
+        let cell = kept[KEPT * g].w;
         members[atomicLoad(&starts[cell]) + atomicAdd(&filled[cell], 1u)] = g;
     }
 }
@@ -140,7 +143,7 @@ fn rank(
     }
     let half = (control.base & 1u) * numbers.grains;
     let id = motions[half + g].id;
-    let touch = kept[3u * g];
+    let touch = kept[KEPT * g];
     let first = atomicLoad(&starts[touch.w]);
     var slot = first;
     for (var k = first; k < atomicLoad(&starts[touch.w + 1u]); k++) {
@@ -148,11 +151,11 @@ fn rank(
             slot++;
         }
     }
-    let counts = bitcast<f32>(kept[3u * g + 1u].x);
+    let counts = bitcast<f32>(kept[KEPT * g + 1u].x);
     slots[slot] = vec4<f32>(bitcast<vec3<f32>>(touch.xyz), counts);
     slot_rows[slot] = g;
     slot_ids[slot] = id;
-    kept[3u * g + 2u].w = slot;
+    kept[KEPT * g + 2u].w = slot;
 }
 
 @compute @workgroup_size(64)
@@ -165,13 +168,13 @@ fn loosen(
     if !renews() || g >= numbers.grains {
         return;
     }
-    let own = bitcast<vec4<f32>>(kept[3u * g + 1u]);
-    let porosity = bed[kept[3u * g].w].w;
+    let own = bitcast<vec4<f32>>(kept[KEPT * g + 1u]);
+    let porosity = bed[kept[KEPT * g].w].w;
     let volume = ball(motions[(control.base & 1u) * numbers.grains + g].radius);
     // ν T of the grain times its mass, were it quite loose.
-    let all = f32(DRAG_EVERY) * porosity * porosity * resistance(porosity, 0.0) * volume / (1.0 - porosity);
+    let all = course[0].towed * f32(course[0].drag_every) * porosity * porosity * resistance(porosity, 0.0) * volume / (1.0 - porosity);
     let drag = own.w * all;
     let pace = all * owns[g].kick;
-    kept[3u * g + 1u].y = bitcast<u32>(drag);
-    slot_drags[kept[3u * g + 2u].w] = vec2<f32>(drag, drag * pace);
+    kept[KEPT * g + 1u].y = bitcast<u32>(drag);
+    slot_drags[kept[KEPT * g + 2u].w] = vec2<f32>(drag, drag * pace);
 }

@@ -38,16 +38,43 @@ const SPREAD: u32 = #{SPREAD}u;
 const LOSSES_READ: u32 = LOSSES + 4u * SPREAD;
 
 #ifdef COMPANION
-// Forces of what goes along with the grains on each wall, along minus its normal, in three slots
-// as above.
+// Forces of what goes along with the grains on each wall, along minus its normal: those that are being
+// added up, then those of its last exchange with the grains, which are held until the next one, then
+// those of the one before.
 const COMPANION: u32 = LOSSES_READ + 4u;
-// What of them moves the wall, in the same slots: a share of the force, and what is taken off [N].
-@group(0) @binding(42) var<storage, read_write> reliefs: array<vec2<f32>>;
+const HELD_COMPANION: u32 = COMPANION + WALLS;
 
+// What of these moves a wall. Twin: dem/src/gpu/scene.rs
+struct Relief {
+    share: f32,  // of the force
+    off: f32,    // N; taken off
+    since: u32,  // step of the exchange
+    unused: u32,
+}
+
+// Of the last exchange, then of the one before.
+@group(0) @binding(42) var<storage, read_write> reliefs: array<Relief>;
+
+// That which acts in `step`: walls are moved by the forces of the step before, so in the step after
+// an exchange by those that were held until then.
 fn companion_force(k: u32, step: u32) -> f32 {
-    let slot = (step % 3u) * WALLS + k;
-    let relief = reliefs[slot];
-    return relief.x * narrow(sum_of(COMPANION + slot)) / scene.force_scale - relief.y;
+    let row = select(k, WALLS + k, step < reliefs[k].since);
+    let force = narrow(sum_of(HELD_COMPANION + row)) / scene.force_scale;
+    return reliefs[row].share * force - reliefs[row].off;
+}
+
+// The exchange of `step` is over: hold what has been added up for wall `k`. For one thread, after all
+// have added.
+fn hold_companion(k: u32, step: u32, share: f32, off: f32) {
+    reliefs[WALLS + k] = reliefs[k];
+    reliefs[k] = Relief(share, off, step, 0u);
+    for (var word = 0u; word < 2u; word++) {
+        let adding = 2u * (COMPANION + k) + word;
+        let held = 2u * (HELD_COMPANION + k) + word;
+        atomicStore(&sums[held + 2u * WALLS], atomicLoad(&sums[held]));
+        atomicStore(&sums[held], atomicLoad(&sums[adding]));
+        atomicStore(&sums[adding], 0u);
+    }
 }
 #endif
 
@@ -156,13 +183,6 @@ fn turn_sums(f: u32, step: u32) {
     let next = ((step + 1u) % 3u) * FORCES + f;
     atomicStore(&sums[2u * next], 0u);
     atomicStore(&sums[2u * next + 1u], 0u);
-#ifdef COMPANION
-    if f < WALLS {
-        let beside = COMPANION + ((step + 1u) % 3u) * WALLS + f;
-        atomicStore(&sums[2u * beside], 0u);
-        atomicStore(&sums[2u * beside + 1u], 0u);
-    }
-#endif
 }
 
 // Velocity of the driven layer after the kick of `step`. A shear stress is known to act only

@@ -17,16 +17,18 @@ pub struct Device {
     /// What went wrong outside of any call.
     trouble: Arc<Mutex<Option<Error>>>,
     /// Bytes that crossed to the device and back.
-    pub(crate) traffic: Arc<[AtomicU64; 2]>,
+    pub(crate) traffic: Arc<[AtomicU64; 3]>,
 }
 
-/// Bytes that have crossed between the host and a device since it was opened.
+/// Bytes that have crossed between the host and a device since it was opened, and what it was told to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
     /// Written to the device.
     pub written: u64,
     /// Read from it.
     pub read: u64,
+    /// Dispatches recorded.
+    pub dispatches: u64,
 }
 
 impl Device {
@@ -177,10 +179,15 @@ impl Device {
         }
     }
 
-    /// Bytes that have crossed so far.
+    /// What has crossed so far.
     pub fn traffic(&self) -> Traffic {
-        let [written, read] = [0, 1].map(|k| self.traffic[k].load(Ordering::Relaxed));
-        Traffic { written, read }
+        let [written, read, dispatches] =
+            [0, 1, 2].map(|k| self.traffic[k].load(Ordering::Relaxed));
+        Traffic {
+            written,
+            read,
+            dispatches,
+        }
     }
 
     /// Compile entry point `entry` of `module`.

@@ -3,6 +3,7 @@
 use crate::kernel::Bound;
 use crate::timing::Stamps;
 use crate::{Array, Bindable, Device, Error};
+use std::sync::atomic::Ordering;
 use wgpu::{CommandEncoder, ComputePass, ComputePassDescriptor};
 
 /// Workgroups along x at most, everywhere; beyond it they spread along y.
@@ -68,6 +69,7 @@ impl Recording {
     }
 
     fn set(&mut self, bound: &Bound, tick: u32) -> &mut ComputePass<'static> {
+        self.device.traffic[2].fetch_add(1, Ordering::Relaxed);
         let pass = self.pass();
         pass.set_pipeline(&bound.pipeline);
         let offset = [tick * TICK_STRIDE as u32];

@@ -1,7 +1,6 @@
 //! Are scenes understood, and wrong ones refused with the place and the remedy?
 
 mod bad;
-mod killed;
 mod meaning;
 mod pores;
 mod protocol;

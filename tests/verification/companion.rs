@@ -4,12 +4,17 @@
 use dem::{Bed, Companion, Moved, Row, Threads};
 use glam::DVec3;
 use std::ops::Range;
+use std::sync::Mutex;
 use tests::solver_on;
 
 /// A pull on all grains [N/kg], and a force that pushes the top wall away [N].
 struct Pull {
     pull: DVec3,
     lift: f64,
+    /// Steps from one exchange to the next.
+    every: u64,
+    /// Sums of the grains' ways upwards at each exchange [m].
+    ways: Mutex<Vec<f64>>,
     mass: Vec<f64>,
     arranged: usize,
     /// Steps in which it was alone, and was settled.
@@ -22,6 +27,8 @@ impl Pull {
         Self {
             pull,
             lift,
+            every: 1,
+            ways: Mutex::default(),
             mass: Vec::new(),
             arranged: 0,
             alone: Vec::new(),
@@ -36,8 +43,15 @@ impl Companion for Pull {
         self.arranged += 1;
         Ok(())
     }
+    fn exchanges(&self, step: u64) -> bool {
+        step.is_multiple_of(self.every)
+    }
     fn follow(&self, moved: &Moved, threads: &Threads) {
-        assert!(moved.step > 0);
+        assert!(moved.step > 0 && moved.passed[0] > 0 && moved.passed[0] <= self.every);
+        for _ in threads.share(1) {
+            let ways = moved.way[..self.mass.len()].iter().map(|way| way.xyz().z);
+            self.ways.lock().unwrap().push(ways.sum());
+        }
         threads.meet();
     }
     fn wants_to_be_alone(&self, step: u64) -> bool {
@@ -78,7 +92,7 @@ fn one_that_does_nothing_gives_the_same_bits_as_none() {
         together.advance_together(300, &mut idle).unwrap();
         together.advance_together(200, &mut idle).unwrap();
         assert!(together.snapshot().state == alone.snapshot().state);
-        assert_eq!(idle.settled, [100, 200, 300, 400, 500]);
+        assert!(idle.settled.iter().copied().eq((1..=5).map(|k| 100 * k)));
         assert!(idle.alone.iter().copied().eq((1..=10).map(|k| 50 * k)));
         assert!(idle.arranged > 1, "no search was made");
         // It stays.
@@ -90,18 +104,45 @@ fn one_that_does_nothing_gives_the_same_bits_as_none() {
 fn a_pull_in_every_step_moves_a_bed_as_gravity_does() {
     let (mut model, start) = tests::bed::Bed::new(300, 6.0, 0.5, 2).sheared(0.05);
     let pull = DVec3::new(0.02, 0.01, -0.1);
-    let mut pulled = solver_on(&model, &start, 2);
-    pulled
-        .advance_together(300, &mut Pull::new(pull, 0.0))
-        .unwrap();
-    let pulled = pulled.snapshot().state.grains;
-    model.gravity = pull;
-    let mut fallen = solver_on(&model, &start, 1);
+    let mut fallen = solver_on(
+        &dem::Model {
+            gravity: pull,
+            ..model.clone()
+        },
+        &start,
+        1,
+    );
     fallen.advance(300).unwrap();
     let fallen = fallen.snapshot().state.grains;
-    for k in 0..fallen.len() {
-        let way = pulled.displacement[k] - fallen.displacement[k];
-        assert!(way.length() < 1e-9, "grain {k} is off by {way}");
+    model.ledger = true;
+    for every in [1, 7] {
+        let mut pulled = solver_on(&model, &start, 2);
+        let mut pulls = Pull::new(pull, 0.0);
+        pulls.every = every;
+        pulled.advance_together(300, &mut pulls).unwrap();
+        let now = pulled.snapshot();
+        let grains = &now.state.grains;
+        let mut work = 0.0;
+        for k in 0..fallen.len() {
+            let way = grains.displacement[k] - fallen.displacement[k];
+            assert!(way.length() < 1e-9, "grain {k} is off by {way}");
+            work +=
+                grains.mass[k] * pull.dot(grains.displacement[k] - start.grains.displacement[k]);
+        }
+        // Also of forces that are still held.
+        let booked = now.ledger.work_companion;
+        assert!((booked / work - 1.0).abs() < 1e-6, "{booked} of {work} J");
+        // What grains have moved is told to the last bit of their places.
+        let searched = pulls.arranged > 1;
+        let ways = pulls.ways.lock().unwrap().iter().sum::<f64>();
+        let (_, since, _) = pulled.since_exchange();
+        let ways = ways + since.iter().map(|way| way.xyz().z).sum::<f64>();
+        let moved = |g: &dem::Grains| g.displacement.iter().map(|d| d.z).sum::<f64>();
+        let moved = moved(grains) - moved(&start.grains);
+        assert!(
+            searched && (ways - moved).abs() < 1e-12,
+            "{ways} of {moved} m"
+        );
     }
 }
 

@@ -1,6 +1,6 @@
 //! The arrays of the coupling itself, under the names that the kernels know.
 
-use super::numbers::{Course, EXTREMES, Numbers, Span};
+use super::numbers::{Course, EXTREMES, Numbers, Span, both_open};
 use crate::Model;
 use dem::gpu::Solver;
 use dem::gpu::search::plan::Grid;
@@ -26,11 +26,18 @@ pub(super) struct Arrays {
     pub collected: Array<f32>,
     pub bed: Array<[f32; 4]>,
     pub pressures: Array<f32>,
+    pub trends: Array<[f32; 4]>,
+    /// For readings: what has been collected until now [m³], and pressure [Pa].
+    pub looks: Array<[f32; 2]>,
     pub vapour: Option<Array<f32>>,
+    /// What has flowed upward through each cell [m], where both walls are open.
+    pub through: Option<Array<[f32; 2]>>,
     pub inverse: Array<[f32; 4]>,
     pub ease: Array<[f32; 4]>,
     pub held: Array<[f32; 4]>,
     pub velocities: Array<[f32; 4]>,
+    /// Where the bottom and the top were at the last exchange.
+    pub walls_left: Array<dem::gpu::wide::Wide>,
     pub reactions: Array<[f32; 4]>,
     pub pushes: Array<[f32; 4]>,
     pub easing: Array<[f32; 4]>,
@@ -75,7 +82,7 @@ impl Arrays {
         let group = Solver::GROUP + 1;
         Ok(Self {
             numbers: device.array_of("numbers", &[*numbers])?,
-            course: device.array_of("course", &[Course::before()])?,
+            course: device.array_of("course", &[Course::before(1.0)])?,
             span: device.array("span", 1)?,
             extremes: device.array("extremes", EXTREMES)?,
             ticks: device.ticks(group)?,
@@ -86,14 +93,21 @@ impl Arrays {
             collected: device.array("collected", cells)?,
             bed: four("bed")?,
             pressures: device.array("pressures", cells)?,
+            trends: four("trends")?,
+            looks: device.array("looks", cells)?,
             vapour: match model.cavitation {
                 Some(_) => Some(device.array("vapour", cells)?),
                 None => None,
+            },
+            through: match both_open(model) {
+                true => Some(device.array("through", cells)?),
+                false => None,
             },
             inverse: four("inverse")?,
             ease: four("ease")?,
             held: four("held")?,
             velocities: four("velocities")?,
+            walls_left: device.array("walls_left", 2)?,
             reactions: four("reactions")?,
             pushes: four("pushes")?,
             easing: four("easing")?,
@@ -138,10 +152,13 @@ impl Arrays {
             ("collected", &self.collected),
             ("bed", &self.bed),
             ("pressures", &self.pressures),
+            ("trends", &self.trends),
+            ("looks", &self.looks),
             ("inverse", &self.inverse),
             ("ease", &self.ease),
             ("held", &self.held),
             ("velocities", &self.velocities),
+            ("walls_left", &self.walls_left),
             ("reactions", &self.reactions),
             ("starts", &self.starts),
             ("filled", &self.filled),
@@ -156,6 +173,9 @@ impl Arrays {
         ];
         if let Some(vapour) = &self.vapour {
             named.push(("vapour", vapour));
+        }
+        if let Some(through) = &self.through {
+            named.push(("through", through));
         }
         if let Some(wide) = &self.wide {
             named.push(("wall_shares", &wide.wall_shares));

@@ -34,6 +34,8 @@ pub struct Coupled<const N: usize> {
     pub(super) loads_at: f64,
     /// Mean porosity at the last renewal.
     pub(super) porosity: f64,
+    /// Part of their drag that loose grains get.
+    pub(super) towed: f64,
     /// Volume of all grains [m³], and their mean density [kg/m³].
     pub(super) volume: f64,
     pub(super) density: f64,
@@ -42,6 +44,9 @@ pub struct Coupled<const N: usize> {
     pub(super) began_with: [f64; 2],
     /// Volume that left through sides of prescribed flux [m³], bottom and top.
     pub(super) let_out: [f64; 2],
+    /// What the first fluid step counts as flowing upward beside bottom and top, and which has
+    /// flowed before [m].
+    pub(super) let_through: f64,
     pub(super) arrays: Arrays,
     pub(super) steps: Steps,
     pub(super) renewal: Renewal,
@@ -49,8 +54,8 @@ pub struct Coupled<const N: usize> {
     pub(super) of_fluid: lbm::gpu::bed::Coupled,
 }
 
-/// Vectors that are kept for each grain: see shaders/coupling/gather.wgsl.
-const KEPT: usize = 3;
+/// Vectors that are kept for each grain: see shaders/coupling/numbers.wgsl.
+const KEPT: usize = 6;
 
 impl<const N: usize> Coupled<N> {
     /// Fill the pores of the bed `state` with water, with the state `water_state` or at rest. The
@@ -104,6 +109,10 @@ impl<const N: usize> Coupled<N> {
             arrays: &arrays,
             grains: grains.arrays(),
         };
+        let area = grains.model().domain.area();
+        let height: f64 = -state.walls.iter().map(|wall| wall.offset).sum::<f64>();
+        let towed = water.towed(1.0 - volume / (area * height));
+        device.write(&arrays.course, 0, &[Course::before(towed)]);
         let (steps, renewal) = (binder.steps()?, binder.renewal()?);
         let found = renewal.begin(device, &arrays, &grains)?;
         let bed = found.see(&mut lattice, volume)?;
@@ -137,9 +146,6 @@ impl<const N: usize> Coupled<N> {
         let mut fluid = lbm::gpu::Solver::new(device, fluid, at)?;
         let of_fluid = fluid.couple(&arrays.guard, &arrays.contents, &arrays.factors)?;
         let of_lattice = binder.of_lattice(&fluid.arrays())?;
-        let stretch = lattice.height / lattice.spacing;
-        let course = Course::new(fluid.scaling(), choice.sub_steps, stretch);
-        device.write(&arrays.course, 0, &[course]);
         let mut coupled = Self {
             device: device.clone(),
             step: grains.model().step,
@@ -150,10 +156,12 @@ impl<const N: usize> Coupled<N> {
             loads_at: start,
             porosity: bed.extremes.mean_porosity,
             volume,
+            towed,
             density: mass / volume,
             events,
             began_with: [0.0; 2],
             let_out: [0.0; 2],
+            let_through: 0.0,
             model: water,
             grains,
             fluid,
@@ -171,15 +179,18 @@ impl<const N: usize> Coupled<N> {
 
     /// The pressure of the start, and what it pushes.
     fn begin(&mut self) -> Result<(), Error> {
+        self.device.write(&self.arrays.course, 0, &[self.course()]);
         let stretch = self.fluid.stretch();
         self.fluid.write_sides(&stretch);
         self.write_taken_off(&[self.taken_off()]);
         let mut recording = self.device.record();
         self.fluid
             .record_contents(&mut recording, &stretch, &self.of_fluid);
-        self.record_push(&mut recording, 0, 0);
+        self.record_push_anew(&mut recording);
         recording.submit()?;
-        self.began_with = [self.snapshot()?.content, self.bed_height()?];
+        let now = self.snapshot()?;
+        self.let_through = self.last_through(&now);
+        self.began_with = [now.content, self.bed_height()?];
         Ok(())
     }
 

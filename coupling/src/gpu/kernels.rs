@@ -8,14 +8,21 @@ pub(super) struct Steps {
     pub scatter: Bound,
     pub add_up: Option<Bound>,
     pub means: Bound,
-    pub scatter_drags: Bound,
+    /// With the drag of loose grains beside.
+    pub scatter_both: Bound,
     pub add_up_drags: Option<Bound>,
     pub react: Bound,
     pub collect: Bound,
+    pub collect_and_feel: Bound,
+    pub feel_drained: Bound,
+    pub feel_renewed: Bound,
     pub push: Bound,
     pub widen: Option<Bound>,
     pub widen_easing: Option<Bound>,
     pub gather: Bound,
+    /// Of a reading.
+    pub scatter_look: Bound,
+    pub look: Bound,
 }
 
 /// Those that need the lattice of the water.
@@ -76,6 +83,7 @@ impl Binder<'_> {
         let a = self.arrays;
         let shares: Named = ("shares", &a.shares);
         let drag_shares: Named = ("shares", &a.drag_shares);
+        let drags_beside: Named = ("drag_shares", &a.drag_shares);
         let pushes: Named = ("pushes", &a.pushes);
         let easing: Named = ("easing", &a.easing);
         let follow = |entry, more: &[Named]| self.bind(["follow", entry], &[], more);
@@ -85,10 +93,15 @@ impl Binder<'_> {
                 scatter: self.bind(moves, &["MOVES"], &[shares])?,
                 add_up: None,
                 means: follow("means", &[shares])?,
-                scatter_drags: self.bind(moves, &["MOVES", "DRAGS"], &[drag_shares])?,
+                scatter_both: self.bind(moves, &["MOVES", "DRAGS"], &[shares, drags_beside])?,
                 add_up_drags: None,
                 react: follow("react", &[drag_shares])?,
                 collect: follow("collect", &[])?,
+                collect_and_feel: follow("collect_and_feel", &[])?,
+                feel_drained: follow("feel_drained", &[])?,
+                feel_renewed: follow("feel_renewed", &[])?,
+                scatter_look: self.bind(moves, &["MOVES", "LOOKS"], &[shares])?,
+                look: follow("look", &[])?,
                 push: self.bind(["push", "push"], &[], &[pushes, easing])?,
                 widen: None,
                 widen_easing: None,
@@ -104,13 +117,18 @@ impl Binder<'_> {
                     scatter: self.bind(moves, &["MOVES"], &[shares])?,
                     add_up: Some(follow("add_up", &[shares, ("rough_sums", &wide.sums)])?),
                     means: follow("means", &[("rough", &wide.sums)])?,
-                    scatter_drags: self.bind(moves, &["MOVES", "DRAGS"], &[drag_shares])?,
+                    scatter_both: self.bind(moves, &["MOVES", "DRAGS"], &[shares, drags_beside])?,
                     add_up_drags: Some(follow(
                         "add_up",
                         &[drag_shares, ("rough_sums", &wide.drag_sums)],
                     )?),
                     react: follow("react", &[("rough", &wide.drag_sums)])?,
                     collect: follow("collect", &[])?,
+                    collect_and_feel: follow("collect_and_feel", &[])?,
+                    feel_drained: follow("feel_drained", &[])?,
+                    feel_renewed: follow("feel_renewed", &[])?,
+                    scatter_look: self.bind(moves, &["MOVES", "LOOKS"], &[shares])?,
+                    look: follow("look", &[])?,
                     push: self.bind(["push", "push"], &[], &rough)?,
                     widen: Some(widen(("rough", &wide.rough_pushes), pushes)?),
                     widen_easing: Some(widen(

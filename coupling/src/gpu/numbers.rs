@@ -1,6 +1,8 @@
 //! What the kernels know of a bed and its water. Twin: shaders/coupling/numbers.wgsl.
 
+use crate::choice::Steps;
 use crate::drag::Law;
+use crate::faces::DRAG_EVERY;
 use crate::lattice::Lattice;
 use crate::{Model, NormalStress};
 use bytemuck::{Pod, Zeroable};
@@ -43,7 +45,11 @@ pub(super) struct Course {
     pub renew_at: u32,
     pub memory: f32,
     pub stretch: f32,
-    pub unused: u32,
+    pub passed: f32,
+    pub exchange: u32,
+    pub drag_every: u32,
+    pub share: f32,
+    pub towed: f32,
 }
 
 /// Of the bed at the last renewal.
@@ -107,25 +113,35 @@ pub(super) fn solid(state: &dem::State) -> (f64, f64) {
 }
 
 impl Course {
-    /// For a lattice of so many sub-steps in cells `stretch` spacings high.
-    pub fn new(scaling: &Scaling, sub_steps: u64, stretch: f64) -> Self {
+    /// For a lattice that makes such `steps` of grains with steps of `step` [s], in cells `stretch`
+    /// spacings high; loose grains get so much of their drag.
+    pub fn new(scaling: &Scaling, steps: &Steps, step: f64, stretch: f64, towed: f64) -> Self {
+        let sub_steps = steps.sub_steps as f64;
         Self {
             storage_unit: (scaling.compressibility * scaling.pressure_unit()) as f32,
             drag_unit: (0.5 * scaling.viscosity * scaling.step / scaling.density) as f32,
             speed: (scaling.spacing / scaling.step) as f32,
-            source_unit: (1.0 / (scaling.spacing.powi(3) * sub_steps as f64)) as f32,
+            source_unit: (1.0 / (scaling.spacing.powi(3) * sub_steps)) as f32,
             renew_at: 0,
             memory: 0.0,
             stretch: stretch as f32,
-            unused: 0,
+            passed: (steps.interval as f64 * step) as f32,
+            exchange: steps.exchange as u32,
+            drag_every: drags_every(steps) as u32,
+            share: (1.0 / steps.exchange as f64) as f32,
+            towed: towed as f32,
         }
     }
 
-    /// Before there is a lattice: fluxes are in m/s.
-    pub fn before() -> Self {
+    /// Before there is a lattice: fluxes are in m/s, and grains exchange in every step.
+    pub fn before(towed: f64) -> Self {
         Self {
+            towed: towed as f32,
             speed: 1.0,
             stretch: 1.0,
+            exchange: 1,
+            drag_every: DRAG_EVERY as u32,
+            share: 1.0,
             ..Self::default()
         }
     }
@@ -143,11 +159,23 @@ pub(super) fn extremes(words: &[u32], mean_porosity: f64) -> Extremes {
     }
 }
 
+/// Grain steps from one drag of loose grains to the next.
+pub(super) fn drags_every(steps: &Steps) -> u64 {
+    steps.exchange.max(DRAG_EVERY)
+}
+
+/// Is a pressure prescribed at both walls?
+pub(super) fn both_open(model: &Model) -> bool {
+    let open = |side: &Side| matches!(side, Side::Pressure(_));
+    model.sides.iter().all(open)
+}
+
 /// What a bed compiles in.
 pub(super) fn flags(model: &Model, reach: usize) -> Flags {
     Flags::new()
         .set_if("WIDE", reach > 3)
         .set_if("CAVITATION", model.cavitation.is_some())
+        .set_if("THROUGH", both_open(model))
         .set_if("UNPREDICTED", !model.predicts)
         .set_if(
             "POROSITY",

@@ -7,9 +7,9 @@ use lbm::Side;
 /// All that readings are made from.
 struct Look {
     contents: Vec<[f32; 4]>,
-    collected: Vec<f32>,
+    /// What has been collected until now [m³], and pressure [Pa].
+    looks: Vec<[f32; 2]>,
     bed: Vec<[f32; 4]>,
-    pressures: Vec<f32>,
     vapour: Vec<f32>,
     loads: Vec<f32>,
 }
@@ -18,11 +18,13 @@ impl<const N: usize> Coupled<N> {
     fn look(&self) -> Result<Look, Error> {
         let arrays = &self.arrays;
         let cells = 0..self.lattice.count();
+        let mut recording = self.device.record();
+        self.record_look(&mut recording);
+        recording.submit()?;
         let mut reading = self.device.reading();
         let contents = reading.add(&arrays.contents, cells.clone());
-        let collected = reading.add(&arrays.collected, cells.clone());
+        let looks = reading.add(&arrays.looks, cells.clone());
         let bed = reading.add(&arrays.bed, cells.clone());
-        let pressures = reading.add(&arrays.pressures, cells.clone());
         let vapour = arrays
             .vapour
             .as_ref()
@@ -31,9 +33,8 @@ impl<const N: usize> Coupled<N> {
         let arrived = reading.wait()?;
         Ok(Look {
             contents: arrived.take(contents),
-            collected: arrived.take(collected),
+            looks: arrived.take(looks),
             bed: arrived.take(bed),
-            pressures: arrived.take(pressures),
             vapour: vapour.map_or_else(|| vec![0.0; cells.len()], |part| arrived.take(part)),
             loads: arrived.take(loads),
         })
@@ -55,7 +56,10 @@ impl<const N: usize> Coupled<N> {
         let look = self.look()?;
         let now = look.snapshot(self);
         Ok(State {
-            pressure: now.pressure,
+            pressure: match self.model.predicts {
+                true => look.pressures(self),
+                false => now.pressure,
+            },
             flux: now.flux,
             vapour: now.vapour,
             loads: look.loads.iter().map(|&load| load.into()).collect(),
@@ -82,8 +86,9 @@ impl<const N: usize> Coupled<N> {
     }
 
     /// Volume of water that left through the bottom and the top wall since this was made [m³], with
-    /// `now` in the pores: what the walls have squeezed out and the pores do not hold. No number
-    /// where a pressure is prescribed at both.
+    /// `now` in the pores: what the walls have squeezed out and the pores do not hold. Where a pressure is
+    /// prescribed at both, the shares follow from the flux in the cells beside them at the end of
+    /// each fluid step.
     ///
     /// # Errors
     /// A device that fails.
@@ -99,8 +104,37 @@ impl<const N: usize> Coupled<N> {
             [Some(bottom), Some(top)] => [bottom, top],
             [Some(bottom), None] => [bottom, all - bottom],
             [None, Some(top)] => [all - top, top],
-            [None, None] => [f64::NAN; 2],
+            [None, None] => {
+                let more = self.through(now)? * self.lattice.area();
+                [0.5 * (all - more), 0.5 * (all + more)]
+            }
         })
+    }
+
+    /// What has flowed upward in the cells beside the bottom and beside the top, added [m].
+    fn through(&self, now: &Snapshot) -> Result<f64, Error> {
+        let Some(through) = &self.arrays.through else {
+            return Ok(f64::NAN);
+        };
+        let cells = self.device.read(through)?;
+        let before = self.beside_walls(cells.iter().map(|&[sum, _]| sum.into()));
+        Ok(before - self.let_through + self.last_through(now))
+    }
+
+    /// What the last fluid step adds to that [m].
+    pub(super) fn last_through(&self, now: &Snapshot) -> f64 {
+        self.between() * self.beside_walls(now.flux.iter().map(|flux| flux[2]))
+    }
+
+    /// Mean over the cells beside the bottom and that over those beside the top, added.
+    fn beside_walls(&self, cells: impl Iterator<Item = f64>) -> f64 {
+        let [nx, ny, nz] = self.lattice.cells;
+        let layer = nx * ny;
+        let beside = cells.enumerate().filter(|(cell, _)| {
+            let z = cell / layer;
+            z == 0 || z + 1 == nz
+        });
+        beside.map(|(_, x)| x).sum::<f64>() / layer as f64
     }
 
     /// Force of the water on the bottom and the top wall, away from the grains [N], buoyancy left
@@ -118,22 +152,21 @@ impl<const N: usize> Coupled<N> {
 impl<const N: usize> Coupled<N> {
     /// Works and losses are not summed here.
     fn ledger(&self, look: &Look, now: &Snapshot) -> Ledger {
-        let each = now.pressure.iter().zip(&look.bed).zip(&look.contents);
-        let cube = self.lattice.spacing.powi(3);
-        let elastic = each.enumerate().map(|(cell, ((&p, bed), contents))| {
+        let pressures = look.pressures(self);
+        let each = pressures.iter().zip(&look.bed);
+        let elastic = each.enumerate().map(|(cell, (&p, bed))| {
             let storage = 1.0 / f64::from(bed[2]);
             let whole = 0.5 * storage * p * p;
             if self.model.cavitation.is_none() {
                 return whole;
             }
             // Beyond what the least pressure stretches vapour has opened.
-            let gone = f64::from(look.vapour[cell]) + f64::from(look.collected[cell]);
-            let water = f64::from(contents[3]) * cube - gone;
-            whole - p.min(0.0) * (storage * p - water).max(0.0)
+            whole - p.min(0.0) * (storage * p - look.water(self, cell)).max(0.0)
         });
         let none = f64::NAN;
         Ledger {
             elastic: elastic.sum(),
+            kinetic: 0.0,
             content: now.content,
             vapour: now.vapour.iter().sum(),
             pores: now.porosity.iter().sum::<f64>() * self.lattice.volume(),
@@ -141,6 +174,7 @@ impl<const N: usize> Coupled<N> {
             work_walls: none,
             work_sides: none,
             dissipated_darcy: none,
+            dissipated_method: none,
             dissipated_loose: none,
             residual: none,
         }
@@ -148,21 +182,40 @@ impl<const N: usize> Coupled<N> {
 }
 
 impl Look {
+    /// What the water of each cell makes of it now [Pa], whatever grains feel.
+    fn pressures<const N: usize>(&self, coupled: &Coupled<N>) -> Vec<f64> {
+        let lattice = &coupled.lattice;
+        let [nx, ny, nz] = lattice.cells;
+        let weight = coupled.model.fluid.density * coupled.grains.model().gravity.z.abs();
+        let pressure = |cell: usize| {
+            let now = self.water(coupled, cell) * f64::from(self.bed[cell][2]);
+            let depth = ((nz - cell / (nx * ny)) as f64 - 0.5) * lattice.height;
+            let least = coupled
+                .model
+                .cavitation
+                .map(|c| c.pressure - weight * depth);
+            least.map_or(now, |least| now.max(least))
+        };
+        (0..lattice.count()).map(pressure).collect()
+    }
+
+    /// Water of a cell beyond that at rest [m³].
+    fn water<const N: usize>(&self, coupled: &Coupled<N>, cell: usize) -> f64 {
+        let cube = coupled.lattice.spacing.powi(3);
+        let water = f64::from(self.contents[cell][3]) * cube;
+        water - f64::from(self.vapour[cell]) - f64::from(self.looks[cell][0])
+    }
+
     fn snapshot<const N: usize>(&self, coupled: &Coupled<N>) -> Snapshot {
         let lattice = &coupled.lattice;
         let scaling = coupled.fluid.scaling();
-        let cube = lattice.spacing.powi(3);
         let speed = scaling.spacing / scaling.step;
         let stretch = lattice.height / lattice.spacing;
         let each = |numbers: &[f32]| -> Vec<f64> { numbers.iter().map(|&x| x.into()).collect() };
-        let content = |cell: usize| {
-            let water = f64::from(self.contents[cell][3]) * cube;
-            water - f64::from(self.vapour[cell]) - f64::from(self.collected[cell])
-        };
         Snapshot {
             bottom: lattice.bottom,
             height: lattice.height,
-            pressure: each(&self.pressures),
+            pressure: self.looks.iter().map(|&[_, p]| p.into()).collect(),
             flux: self
                 .contents
                 .iter()
@@ -173,7 +226,9 @@ impl Look {
                 .collect(),
             porosity: self.bed.iter().map(|cell| cell[3].into()).collect(),
             vapour: each(&self.vapour),
-            content: (0..lattice.count()).map(content).sum(),
+            content: (0..lattice.count())
+                .map(|cell| self.water(coupled, cell))
+                .sum(),
         }
     }
 

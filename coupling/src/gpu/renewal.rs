@@ -138,9 +138,20 @@ pub(super) fn situation<'a>(
 }
 
 impl<const N: usize> Coupled<N> {
-    fn course(&self) -> Course {
+    pub(super) fn course(&self) -> Course {
         let stretch = self.lattice.height / self.lattice.spacing;
-        Course::new(self.fluid.scaling(), self.choice.sub_steps, stretch)
+        Course::new(
+            self.fluid.scaling(),
+            &self.choice,
+            self.step,
+            stretch,
+            self.towed,
+        )
+    }
+
+    /// Time from one step of the fluid to the next [s].
+    pub(super) fn between(&self) -> f64 {
+        self.choice.interval as f64 * self.step
     }
 
     /// Tell the device when weights are to be renewed.
@@ -199,7 +210,7 @@ impl<const N: usize> Coupled<N> {
                 .record_contents(&mut recording, &stretch, &self.of_fluid);
         }
         recording.section("prediction");
-        self.record_push(&mut recording, 0, step);
+        self.record_push_anew(&mut recording);
         Ok(recording.submit()?)
     }
 

@@ -3,7 +3,7 @@
 use super::arrays::BLOCK;
 use super::coupled::Coupled;
 use super::kernels::Over;
-use crate::faces::drags;
+use super::numbers::drags_every;
 use crate::{Error, NormalStress};
 use lbm::Side;
 use shaders::{Array, Bound, Recording, groups};
@@ -57,11 +57,16 @@ impl<const N: usize> Coupled<N> {
         Ok(Some(sections))
     }
 
-    /// The step in which weights are next renewed: not one in which loose grains are dragged, since
-    /// what faces have taken with the old weights would be given with the new ones.
+    /// The step in which weights are next renewed: one with an exchange.
     fn next_renewal(&self) -> u64 {
-        let due = self.renewed_at + self.model.renewal;
-        due + u64::from(drags(due))
+        let due = self.renewed_at + self.model.renews_every(self.step);
+        due.next_multiple_of(self.choice.exchange)
+    }
+
+    /// Are loose grains dragged at the exchange of this step? Not with the forces at which water joins,
+    /// nor with weights that faces had not when they took.
+    fn drags(&self, step: u64, renewal: u64) -> bool {
+        step > 0 && step.is_multiple_of(drags_every(&self.choice)) && step != renewal
     }
 
     /// Make a group of steps, until `end` at most: into `recording`, which `submit` hands over.
@@ -94,9 +99,15 @@ impl<const N: usize> Coupled<N> {
             recording.section("grains");
             self.grains
                 .record_next(&mut recording, tick - 1, step == renewal);
+            taken_off.push(self.taken_off());
+            if !step.is_multiple_of(self.choice.exchange) {
+                continue;
+            }
             recording.section("prediction");
-            self.record_follow(&mut recording, tick, step);
-            if step - self.fluid_at >= self.choice.interval {
+            let drags = self.drags(step, renewal);
+            let drains = step - self.fluid_at >= self.choice.interval;
+            self.record_follow(&mut recording, tick, drags, drains);
+            if drains {
                 recording.section("fluid");
                 self.dispatch(&mut recording, &self.of_lattice.drain, tick, Over::Cells);
                 self.fluid.record_steps(
@@ -109,10 +120,12 @@ impl<const N: usize> Coupled<N> {
                 self.fluid_at = step;
                 drained.push((step, self.let_out));
                 recording.section("prediction");
+                let feel = &self.steps.feel_drained;
+                self.dispatch(&mut recording, feel, tick, Over::Cells);
+                taken_off[tick as usize] = self.taken_off();
             }
-            taken_off.push(self.taken_off());
             if step != renewal {
-                self.record_push(&mut recording, tick, step);
+                self.record_push(&mut recording, tick, drags);
             }
         }
         recording.section("settle");
@@ -144,37 +157,64 @@ impl<const N: usize> Coupled<N> {
         }
     }
 
-    /// The water follows the motion of `step`, which is number `tick` of its group.
-    fn record_follow(&self, recording: &mut Recording, tick: u32, step: u64) {
+    /// The water follows the motion until step `tick` of a group; `drags`: loose grains are dragged,
+    /// `drains`: a step of the fluid comes next.
+    fn record_follow(&self, recording: &mut Recording, tick: u32, drags: bool, drains: bool) {
         let kernels = &self.steps;
         let mut over = |bound: &Bound, over: Over| self.dispatch(recording, bound, tick, over);
-        over(&kernels.scatter, Over::Lists);
+        let scatter = match drags {
+            true => &kernels.scatter_both,
+            false => &kernels.scatter,
+        };
+        over(scatter, Over::Lists);
         if let Some(add_up) = &kernels.add_up {
             over(add_up, Over::Cells);
         }
         over(&kernels.means, Over::Cells);
-        if drags(step) {
-            over(&kernels.scatter_drags, Over::Lists);
+        if drags {
             if let Some(add_up) = &kernels.add_up_drags {
                 over(add_up, Over::Cells);
             }
             over(&kernels.react, Over::Cells);
         }
-        over(&kernels.collect, Over::Cells);
+        match drains {
+            true => over(&kernels.collect, Over::Cells),
+            false => over(&kernels.collect_and_feel, Over::Cells),
+        }
     }
 
-    /// The water pushes grains and walls, as they are after `step`.
-    pub(super) fn record_push(&self, recording: &mut Recording, tick: u32, step: u64) {
+    /// The water pushes grains and walls until the next exchange.
+    fn record_push(&self, recording: &mut Recording, tick: u32, drags: bool) {
         let kernels = &self.steps;
         let mut over = |bound: &Bound, over: Over| self.dispatch(recording, bound, tick, over);
         over(&kernels.push, Over::Cells);
         if let Some(widen) = &kernels.widen {
             over(widen, Over::Cells);
         }
-        if let Some(widen) = kernels.widen_easing.as_ref().filter(|_| drags(step)) {
+        if let Some(widen) = kernels.widen_easing.as_ref().filter(|_| drags) {
             over(widen, Over::Cells);
         }
         over(&kernels.gather, Over::Grains);
+    }
+
+    /// The same with new weights, between two groups.
+    pub(super) fn record_push_anew(&self, recording: &mut Recording) {
+        self.dispatch(recording, &self.steps.feel_renewed, 0, Over::Cells);
+        self.record_push(recording, 0, false);
+    }
+
+    /// What the water is like now, for who reads: between two exchanges too.
+    pub(super) fn record_look(&self, recording: &mut Recording) {
+        let kernels = &self.steps;
+        let mut over = |bound: &Bound, over: Over| self.dispatch(recording, bound, 0, over);
+        over(&self.renewal.number, Over::Grains);
+        over(&self.renewal.relabel, Over::Grains);
+        over(&kernels.scatter_look, Over::Lists);
+        if let Some(add_up) = &kernels.add_up {
+            over(add_up, Over::Cells);
+        }
+        over(&kernels.means, Over::Cells);
+        over(&kernels.look, Over::Cells);
     }
 
     fn dispatch(&self, recording: &mut Recording, bound: &Bound, tick: u32, over: Over) {

@@ -17,6 +17,7 @@ const FILES: [(&str, &[&[&str]]); 8] = [
             &["DEPOSIT"],
             &["MOVES"],
             &["MOVES", "DRAGS"],
+            &["MOVES", "LOOKS"],
         ],
     ),
     ("follow", &[&[]]),
@@ -48,6 +49,7 @@ fn scenes() -> Vec<Flags> {
         grains()
             .set_if("WIDE", bit(0))
             .set_if("CAVITATION", bit(1))
+            .set_if("THROUGH", bit(1))
             .set_if("UNPREDICTED", bit(2))
     });
     choices.chain(laws).collect()
@@ -137,7 +139,11 @@ fn structs_of_the_coupling_lie_alike_on_both_sides() {
         renew_at,
         memory,
         stretch,
-        unused
+        passed,
+        exchange,
+        drag_every,
+        share,
+        towed
     );
     same!(&bed, Span, bottom, height, bed, mean_load, half, unused);
 }

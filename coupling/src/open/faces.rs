@@ -2,6 +2,7 @@
 
 use super::{Open, neighbour, neighbours, porosity};
 use crate::lattice::Lattice;
+use dem::Row;
 use lbm::Side;
 
 impl Open {
@@ -149,29 +150,73 @@ impl Open {
                 let flux = self.free[node][axis] + self.yielding[node][axis] * drop;
                 let phi = porosity(&self.shares[node][axis]);
                 let velocity = v[axis] + flux / phi;
-                let change = velocity - self.velocity[node][axis];
+                let before = self.velocity[node][axis];
+                let change = velocity - before;
                 self.flux[node][axis] = flux;
                 self.velocity[node][axis] = velocity;
                 let inertia = phi * self.fluid.density * change / self.step;
                 let kept = inertia - self.shear[node][axis];
                 if axis < 2 || (k > 0 && k < nz) {
                     self.kept[cell].0[axis] = volume * kept;
+                    if self.books.kept {
+                        let distance = [lattice.spacing, lattice.spacing, lattice.height][axis];
+                        self.book_face(lattice, [node, axis], before, drop / distance);
+                    }
                     continue;
                 }
                 let side = usize::from(k > 0);
                 let end = &mut self.ends[column][side];
-                end.push = match &self.sides[side] {
+                match &self.sides[side] {
                     Side::Pressure(_) | Side::Flux(_) => {
                         if matches!(self.sides[side], Side::Pressure(_)) {
                             end.excess = if side == 0 { drop } else { -drop };
                         }
                         let drop = if side == 0 { end.excess } else { -end.excess };
-                        let push = 2.0 * drop / lattice.height - kept;
+                        let gradient = 2.0 * drop / lattice.height;
                         let solid = self.shares[node][2].solid;
-                        if solid > 0.0 { push / solid } else { 0.0 }
+                        end.push = if solid > 0.0 {
+                            (gradient - kept) / solid
+                        } else {
+                            0.0
+                        };
+                        if self.books.kept {
+                            self.book_face(lattice, [node, axis], before, gradient);
+                        }
                     }
-                    _ => 0.0,
+                    _ => end.push = 0.0,
+                }
+            }
+        }
+    }
+
+    /// No water passes tight walls: what drags the grains in the half cells before them.
+    pub(super) fn stand(&mut self, lattice: &Lattice, velocity: &[Row], walls: [f64; 2]) {
+        let nz = lattice.cells[2];
+        let tight = |side: usize| !matches!(self.sides[side], Side::Pressure(_) | Side::Flux(_));
+        let tight = [tight(0), tight(1)];
+        for end in self.ends.as_flattened_mut() {
+            end.slip = 0.0;
+        }
+        for part in &self.beside_walls {
+            let side = usize::from(part.side);
+            let slip = velocity[part.grain as usize].xyz().z - walls[side];
+            self.ends[part.column as usize][side].slip += part.share * slip;
+        }
+        for (column, ends) in self.ends.iter_mut().enumerate() {
+            for side in (0..2).filter(|&side| tight[side]) {
+                let share = &self.shares[column * (nz + 1) + side * nz][2];
+                let end = &mut ends[side];
+                let resistance = share.resistance(&self.resistance, &self.fluid, end.slip.abs());
+                let drag = -resistance * end.slip;
+                end.push = match share.solid > 0.0 {
+                    true => drag / share.solid,
+                    false => 0.0,
                 };
+                let drop = 0.5 * lattice.height * drag;
+                end.excess = if side == 0 { drop } else { -drop };
+                if self.books.kept {
+                    self.books.drag -= 0.5 * self.step * lattice.volume() * drag * end.slip;
+                }
             }
         }
     }

@@ -48,16 +48,37 @@ fn at_long_waves(c: f64) -> f64 {
     (1.0 - c).powi(4) / (1.0 + c * (4.0 + c * (4.0 + c * (c - 4.0))))
 }
 
+/// The part of a grain in the solid of the half cell at a wall.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    /// Which of the grains.
+    pub grain: u32,
+    /// Which column, and is it the top?
+    pub column: u32,
+    pub side: u8,
+    /// Of all the solid there.
+    pub share: f64,
+}
+
+/// How all grains are shared out.
+pub(crate) struct Shares {
+    /// Among the faces.
+    pub faces: Vec<[Share; 3]>,
+    /// Among the half cells at the walls.
+    pub ends: Vec<Part>,
+}
+
 /// Share out grains at these places, in cells, with their volumes [m³].
 pub(crate) fn share<const N: usize>(
     lattice: &Lattice,
     grains: impl Iterator<Item = ([f64; 3], f64)>,
-) -> Vec<[Share; 3]> {
+) -> Shares {
     let [nx, ny, nz] = lattice.cells;
     let m = half_width(N) as i64;
     let unit = 1.0 / lattice.volume();
     let mut sums = vec![[Share::default(); 3]; nodes(lattice)];
-    for (at, volume) in grains {
+    let mut ends = Vec::new();
+    for (grain, (at, volume)) in grains.enumerate() {
         let Place { cell, within } = Place::of(lattice, at);
         let cell = cell.map(|k| k as i64);
         let [x, y, z] = within.map(shares::<N>);
@@ -93,6 +114,15 @@ pub(crate) fn share<const N: usize>(
             let share = &mut sums[node][axis];
             share.solid += c * weight;
             share.own += (c * weight).powi(2);
+            let (column, k) = (node / (nz + 1), node % (nz + 1));
+            if axis == 2 && (k == 0 || k == nz) {
+                ends.push(Part {
+                    grain: grain as u32,
+                    column: column as u32,
+                    side: u8::from(k > 0),
+                    share: c * weight,
+                });
+            }
         }
     }
     for share in sums.as_flattened_mut() {
@@ -102,5 +132,9 @@ pub(crate) fn share<const N: usize>(
             0.0
         };
     }
-    sums
+    for part in &mut ends {
+        let node = part.column as usize * (nz + 1) + usize::from(part.side) * nz;
+        part.share /= sums[node][2].solid.max(f64::MIN_POSITIVE);
+    }
+    Shares { faces: sums, ends }
 }

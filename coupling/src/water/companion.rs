@@ -1,4 +1,4 @@
-//! The water as what goes along with the grains: its part of each of their steps.
+//! The water as what goes along with the grains: its part of each exchange.
 
 use super::Water;
 use crate::NormalStress;
@@ -8,18 +8,28 @@ use std::ops::Range;
 
 impl<const N: usize> Companion for Water<N> {
     fn arrange(&mut self, bed: &dem::Bed) -> Result<(), String> {
-        self.renew(bed).map_err(|error| error.to_string())
+        self.settle(bed)
+    }
+
+    fn exchanges(&self, step: u64) -> bool {
+        step.is_multiple_of(self.steps.exchange)
     }
 
     fn follow(&self, moved: &Moved, threads: &Threads) {
-        let pass = self.pass();
+        let pass = self.pass_at(moved.step);
         self.book_walls(moved, threads);
-        self.mark_collected(moved.step, threads);
+        pass.book_dragged(moved, threads);
         pass.follow(moved, threads);
-        let predicts = self.model.predicts;
-        pass.collect(moved, threads, self.step, |cell, collected| {
+        let (predicts, drains) = (self.model.predicts, self.drains(moved.step));
+        let times = self.times(moved);
+        pass.collect(moved, threads, |cell, collected, trend| {
+            if drains {
+                // The fluid step will tell.
+                return f64::NAN;
+            }
             let gone = if predicts { collected } else { 0.0 };
-            self.pressure_of(cell, gone)
+            let ahead = trend.ahead(self.pressure_of(cell, gone), &times);
+            ahead.max(self.least[cell])
         });
     }
 
@@ -28,8 +38,8 @@ impl<const N: usize> Companion for Water<N> {
     }
 
     fn alone(&mut self, moved: &Moved) {
-        match self.drain(moved.step, moved.walls) {
-            Ok(()) => self.feel(),
+        match self.drain(moved) {
+            Ok(()) => self.feel(moved),
             Err(error) => self.fault = Some(error),
         }
     }
@@ -46,14 +56,12 @@ impl<const N: usize> Companion for Water<N> {
                 self.renew(bed)
             }
         };
-        renewed.map_err(|error| error.to_string())?;
-        self.feel();
-        Ok(())
+        renewed.map_err(|error| error.to_string())
     }
 
     fn push(&self, moved: &Moved, threads: &Threads, own: Range<usize>, force: &mut [Row]) {
-        let pass = self.pass();
-        pass.push(moved, threads);
+        let pass = self.pass_at(moved.step);
+        pass.push(threads);
         pass.gather(moved, own, force);
     }
 

@@ -3,26 +3,29 @@
 use super::Water;
 use super::flow::Flow;
 use crate::Error;
+use crate::open::Motion;
+use dem::Moved;
 use lbm::Side;
 
 impl<const N: usize> Water<N> {
     /// The water's own step: what has been collected is drained.
-    pub(super) fn drain(&mut self, step: u64, walls: &[dem::WallState]) -> Result<(), Error> {
+    pub(super) fn drain(&mut self, moved: &Moved) -> Result<(), Error> {
+        let step = moved.step;
         let passed = (step - self.fluid_at) as f64 * self.step;
         self.fluid_at = step;
-        let energy = match self.books.kept {
-            true => self.before_fluid_step(),
-            false => 0.0,
-        };
         let lattice = &self.lattice;
         let collected = self.fields.collected.get_mut();
         let solver = match &mut self.flow {
             Flow::Lattice(solver) => solver,
             Flow::Open(open) => {
-                let [bottom, top] = self.walls.map(|k| walls[k].velocity);
-                let (walls, solid) = ([bottom, -top], self.fields.velocity.get_mut());
+                let [bottom, top] = self.walls.map(|k| moved.walls[k].velocity);
+                let motion = Motion {
+                    each: moved.velocity,
+                    faces: self.fields.velocity.get_mut(),
+                    walls: [bottom, -top],
+                };
                 let (storage, content) = (&self.storage, &mut self.content);
-                open.advance(lattice, solid, walls, collected, storage, content)?;
+                open.advance(lattice, &motion, collected, storage, content)?;
                 collected.fill(0.0);
                 self.fields.kept.clone_from(&open.kept);
                 self.fields.ends.clone_from(&open.ends);
@@ -55,7 +58,7 @@ impl<const N: usize> Water<N> {
         self.read_content();
         let left = self.see_leaving(before - self.content.iter().sum::<f64>(), passed);
         if self.books.kept {
-            self.book_fluid_step(energy, left, passed);
+            self.book_sides(left, passed);
         }
         Ok(())
     }
@@ -102,20 +105,35 @@ impl<const N: usize> Water<N> {
         }
     }
 
-    /// The pressure that grains feel follows.
-    pub(super) fn feel(&mut self) {
+    /// The pressure that grains feel until the next exchange follows.
+    pub(super) fn feel(&mut self, moved: &Moved) {
         if let Flow::Open(open) = &self.flow {
             // As solved: of its differences the water keeps what is told in `kept`.
             let pressure = self.fields.pressure.get_mut();
             pressure.copy_from_slice(&open.pressure);
             return;
         }
+        let times = self.times(moved);
+        for cell in 0..self.lattice.count() {
+            let now = self.pressure_of(cell, 0.0);
+            let ahead = self.fields.trends.get_mut()[cell].ahead(now, &times);
+            self.fields.pressure.get_mut()[cell] = ahead.max(self.least[cell]);
+        }
+    }
+
+    /// The same when cells have changed, as at the last exchange but for that.
+    pub(super) fn feel_anew(&mut self) {
+        if let Flow::Open(_) = &self.flow {
+            return;
+        }
         let predicts = self.model.predicts;
         for cell in 0..self.lattice.count() {
             let collected = self.fields.collected.get_mut()[cell];
-            let gone = if predicts { collected } else { 0.0 };
-            let pressure = self.pressure_of(cell, gone);
-            self.fields.pressure.get_mut()[cell] = pressure;
+            let now = self.pressure_of(cell, if predicts { collected } else { 0.0 });
+            let trend = &mut self.fields.trends.get_mut()[cell];
+            trend.before = now;
+            let ahead = now + trend.rise;
+            self.fields.pressure.get_mut()[cell] = ahead.max(self.least[cell]);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What moves the water: a lattice where pressure diffuses, or its momentum where pores are open.
 
-use crate::open::Open;
+use crate::lattice::Lattice;
+use crate::open::{Books, Open};
 
 /// The one or the other.
 #[allow(
@@ -20,6 +21,22 @@ impl Flow {
         match self {
             Self::Lattice(solver) => solver.time(),
             Self::Open(open) => open.time,
+        }
+    }
+
+    /// Where the energy of open pores went; nothing where there is a lattice.
+    pub fn books(&self) -> Books {
+        match self {
+            Self::Lattice(_) => Books::default(),
+            Self::Open(open) => open.books,
+        }
+    }
+
+    /// Kinetic energy of the water [J]; none where drag holds it.
+    pub fn kinetic(&self, cells: &Lattice) -> f64 {
+        match self {
+            Self::Lattice(_) => 0.0,
+            Self::Open(open) => open.kinetic(cells),
         }
     }
 

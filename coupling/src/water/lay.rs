@@ -6,8 +6,12 @@ use super::flow::Flow;
 use super::reading::State;
 use crate::Error;
 use crate::choice::{Situation, Steps, fluid_model};
+use crate::drag::Law;
 use crate::drift::Drift;
 use crate::open::Open;
+
+/// Solid fraction below which a layer of cells counts as empty.
+const EMPTY: f64 = 1e-3;
 
 impl<const N: usize> Water<N> {
     /// Lay the lattice for the bed that has been weighed.
@@ -22,6 +26,7 @@ impl<const N: usize> Water<N> {
         for cell in 0..self.lattice.count() {
             let pressure = self.pressure_of(cell, 0.0);
             self.fields.pressure.get_mut()[cell] = pressure;
+            self.fields.trends.get_mut()[cell].before = pressure;
         }
         Ok(())
     }
@@ -50,6 +55,7 @@ impl<const N: usize> Water<N> {
         if situation.is_open() {
             return self.open(bed, time, known);
         }
+        self.find_grains_everywhere()?;
         let height = self.lattice.height;
         self.steps = situation.choose(&mut fluid, |fluid| {
             lbm::Scaling::choose::<f64>(fluid, height)
@@ -71,6 +77,26 @@ impl<const N: usize> Water<N> {
         Ok(())
     }
 
+    /// A layer of cells without a grain has no permeability of its own, and under one that is the same
+    /// everywhere what it pushes falls on the few grains that touch it.
+    fn find_grains_everywhere(&self) -> Result<(), Error> {
+        if !matches!(self.model.resistance.law(), Law::Constant(_)) {
+            return Ok(());
+        }
+        let nz = self.lattice.cells[2];
+        let least = EMPTY * self.lattice.volume() * (self.lattice.count() / nz) as f64;
+        let of_layer = |k: usize| self.solid.iter().skip(k).step_by(nz).sum::<f64>();
+        let Some(empty) = (0..nz).find(|&k| of_layer(k) < least) else {
+            return Ok(());
+        };
+        Err(Error::Invalid(format!(
+            "layer {} of the {nz} layers of cells holds no grain, and yet has the permeability of a \
+             bed: let the top wall down to the grains, or give a permeability or drag that follows \
+             from porosity",
+            empty + 1
+        )))
+    }
+
     /// The pores are open: the water's momentum from now on, the content of each cell kept.
     pub(super) fn open(
         &mut self,
@@ -79,16 +105,21 @@ impl<const N: usize> Water<N> {
         flux: Option<&[[f64; 3]]>,
     ) -> Result<(), Error> {
         crate::choice::open_is_possible(&self.model, self.density)?;
-        self.steps = Steps {
-            interval: 1,
-            sub_steps: 1,
-        };
+        self.steps = Steps::EVERY_ONE;
         let each = self.content.iter().zip(&self.storage);
         let pressure = each.map(|(content, storage)| content / storage).collect();
-        let open = Open::new(&self.model, &self.lattice, self.step, time, flux, pressure);
+        let kept = self.books.kept;
+        self.close_lattice_books();
+        let open = Open::new(
+            &self.model,
+            &self.lattice,
+            self.step,
+            time,
+            flux,
+            pressure,
+            kept,
+        );
         self.flow = Flow::Open(open);
-        // The energy of moving water is not in the books.
-        self.books.kept = false;
         self.drift = Drift::default();
         self.weigh(bed)
     }
@@ -109,12 +140,16 @@ impl<const N: usize> Water<N> {
         (most, least)
     }
 
+    /// Of the grains alone [kg/m³].
+    fn bulk_density(&self) -> f64 {
+        let solid: f64 = self.solid.iter().sum();
+        self.density * solid / (self.lattice.count() as f64 * self.lattice.volume())
+    }
+
     /// Speed of undrained sound [m/s], with a soft skeleton where its stiffness is not known.
     pub(super) fn sound(&self, storage: f64) -> f64 {
         let stiffness = self.model.stiffness.unwrap_or(0.0) + 1.0 / storage;
-        let solid: f64 = self.solid.iter().sum();
-        let share = solid / (self.lattice.count() as f64 * self.lattice.volume());
-        (stiffness / (share * self.density)).sqrt()
+        (stiffness / self.bulk_density()).sqrt()
     }
 
     /// Porosity and permeability of the cells, in `lbm`'s order.

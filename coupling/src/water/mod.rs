@@ -4,21 +4,24 @@ mod companion;
 mod drain;
 mod flow;
 mod lay;
+mod pending;
 mod reading;
 mod weigh;
 
+pub(crate) use pending::Pending;
 pub use reading::{Snapshot, State};
 
 use crate::choice::{Steps, fluid_model};
 use crate::drift::Drift;
 use crate::exchange::Exchange;
-use crate::faces::{Fields, Frozen, Pass, drags};
+use crate::faces::{DRAG_EVERY, Fields, Frozen, Pass};
 use crate::kernels::Kernels;
 use crate::lattice::Lattice;
 use crate::ledger::Books;
 use crate::load::Loads;
 use crate::report::Events;
 use crate::softness::Softness;
+use crate::trend::Times;
 use crate::{Error, Model};
 use flow::Flow;
 use weigh::span;
@@ -38,6 +41,8 @@ pub struct Water<const N: usize> {
     /// Indices of the bottom and the top wall in the grains' model.
     pub(crate) walls: [usize; 2],
     pub(crate) loads: Loads,
+    /// Part of their drag that loose grains get.
+    towed: f64,
     pub(crate) kernels: Kernels<N>,
     pub(crate) exchange: Exchange,
     pub(crate) frozen: Frozen,
@@ -103,17 +108,15 @@ impl<const N: usize> Water<N> {
             step: bed.model.step,
             fluid_at: 0,
             renewed_at: 0,
-            steps: Steps {
-                interval: 1,
-                sub_steps: 1,
-            },
+            steps: Steps::EVERY_ONE,
             walls,
             loads: Loads::default(),
+            towed: model.towed(porosity),
             kernels: Kernels::choose(),
             exchange: Exchange::default(),
             frozen: Frozen::default(),
             fields: Fields::new::<N>(&lattice),
-            books: Books::new(bed.model.ledger, count),
+            books: Books::new(bed.model.ledger),
             drift: Drift::default(),
             flow: Flow::Lattice(lbm::Solver::new(first, at_rest, 1)?),
             fault: None,
@@ -163,7 +166,7 @@ impl<const N: usize> Water<N> {
     }
 
     /// Are the pores open, so that the water's own mass holds it?
-    fn is_open(&self) -> bool {
+    pub(crate) fn is_open(&self) -> bool {
         matches!(self.flow, Flow::Open(_))
     }
 
@@ -183,20 +186,58 @@ impl<const N: usize> Water<N> {
         step - self.fluid_at >= self.steps.interval
     }
 
-    /// Not where loose grains are dragged: what faces have taken with the old weights would be
-    /// given with the new ones.
     fn renews(&self, step: u64) -> bool {
-        step >= self.renewed_at + self.model.renewal && !drags(step)
+        step >= self.renewed_at + self.model.renews_every(self.step)
+    }
+
+    /// Steps from one drag of loose grains to the next.
+    fn drags_every(&self) -> u64 {
+        self.steps.exchange.max(DRAG_EVERY)
+    }
+
+    /// Are loose grains dragged at the exchange of this step? Not with the forces at which water
+    /// joins, nor with weights that faces had not when they took.
+    fn drags(&self, step: u64) -> bool {
+        step > 0 && step.is_multiple_of(self.drags_every()) && self.renewed_at != step
     }
 
     pub(crate) fn pass(&self) -> Pass<'_, N> {
+        self.pass_over(&self.exchange)
+    }
+
+    fn pass_over<'a>(&'a self, exchange: &'a Exchange) -> Pass<'a, N> {
         Pass {
             lattice: &self.lattice,
             kernels: &self.kernels,
-            exchange: &self.exchange,
+            exchange,
             frozen: &self.frozen,
             fields: &self.fields,
             walls: self.walls,
+            step: self.step,
+            share: None,
         }
+    }
+
+    /// At the exchange of this step.
+    fn pass_at(&self, step: u64) -> Pass<'_, N> {
+        let share = 1.0 / self.steps.exchange as f64;
+        Pass {
+            share: self.drags(step).then_some(share),
+            ..self.pass()
+        }
+    }
+
+    /// Times of the exchange of this step.
+    fn times(&self, moved: &dem::Moved) -> Times {
+        Times {
+            passed: moved.passed.map(|steps| steps as f64 * self.step),
+            ahead: self.steps_ahead(moved.step) * self.step,
+        }
+    }
+
+    /// Steps from the exchange of this one to the middle of the kicks that it makes.
+    fn steps_ahead(&self, step: u64) -> f64 {
+        let every = self.steps.exchange;
+        0.5 * (every - step % every - 1) as f64
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Water;
 use super::flow::Flow;
+use super::pending::Pending;
 use crate::Model;
 #[cfg(test)]
 use dem::Row;
@@ -13,7 +14,8 @@ pub struct Snapshot {
     pub bottom: f64,
     /// Height of a cell [m].
     pub height: f64,
-    /// Pressure beyond hydrostatic that the grains feel [Pa].
+    /// Pressure beyond hydrostatic [Pa]; from one exchange to the next grains feel that expected in
+    /// the middle between them.
     pub pressure: Vec<f64>,
     /// Darcy flux at the last fluid step [m/s].
     pub flux: Vec<[f64; 3]>,
@@ -71,8 +73,13 @@ impl<const N: usize> Water<N> {
         }
     }
 
-    /// The water now.
+    /// The water at the last exchange.
     pub fn snapshot(&self) -> Snapshot {
+        self.snapshot_after(&Pending::nothing(self))
+    }
+
+    /// The water after what is pending.
+    pub(crate) fn snapshot_after(&self, pending: &Pending) -> Snapshot {
         let lattice = &self.lattice;
         let count = lattice.count();
         let mut now = Snapshot {
@@ -85,22 +92,39 @@ impl<const N: usize> Water<N> {
             content: 0.0,
         };
         // SAFETY: a shared borrow between steps: nobody writes.
-        let collected = unsafe { self.fields.collected.read() };
+        let (collected, trends) =
+            unsafe { (self.fields.collected.read(), self.fields.trends.read()) };
         for cell in 0..count {
             let at = lattice.cell_of_lbm(cell);
-            now.pressure[at] = self.pressure()[cell];
+            let gone = collected[cell] + pending.volume[cell];
+            now.pressure[at] = match pending.part {
+                // What grains feel, on its way from the last exchange.
+                Some(part) => {
+                    (trends[cell].before + part * trends[cell].rise).max(self.least[cell])
+                }
+                None => self.pressure()[cell],
+            };
             now.porosity[at] = 1.0 - self.solid[cell] / lattice.volume();
             now.vapour[at] = self.vapour[cell];
-            now.content += self.content[cell] - self.vapour[cell] - collected[cell];
+            now.content += self.content[cell] - self.vapour[cell] - gone;
         }
         now
     }
 
-    /// What must be known to go on.
-    pub fn state(&self) -> State {
-        let now = self.snapshot();
+    /// What must be known to go on after what is pending.
+    pub(crate) fn state_after(&self, pending: &Pending) -> State {
+        let now = self.snapshot_after(pending);
+        let mut pressure = now.pressure;
+        if let (Flow::Lattice(_), true) = (&self.flow, self.model.predicts) {
+            // SAFETY: a shared borrow between steps: nobody writes.
+            let collected = unsafe { self.fields.collected.read() };
+            for cell in 0..self.lattice.count() {
+                let gone = collected[cell] + pending.volume[cell];
+                pressure[self.lattice.cell_of_lbm(cell)] = self.pressure_of(cell, gone);
+            }
+        }
         State {
-            pressure: now.pressure,
+            pressure,
             flux: now.flux,
             vapour: now.vapour,
             loads: self.loads.mean.clone(),

@@ -4,11 +4,11 @@ use super::Water;
 use super::flow::Flow;
 use crate::Error;
 use crate::exchange::Place;
-use crate::faces::{DRAG_EVERY, Frozen, Pass};
+use crate::faces::Frozen;
 use crate::kernel::{folded_cell, folded_face, half_width, shares};
 use crate::lattice::Lattice;
 use crate::open::share;
-use dem::{Horizontal, Row, Shared};
+use dem::{Row, Shared};
 use glam::DVec3;
 
 /// A grain on the scales.
@@ -69,7 +69,11 @@ impl<const N: usize> Water<N> {
         for cell in 0..lattice.count() {
             let pores = lattice.volume() - self.solid[cell];
             if pores < 0.02 * lattice.volume() {
-                let what = format!("a cell of the water holds {pores:.2e} m³ of it: too little");
+                let what = format!(
+                    "a cell of {:.2e} m³ holds {pores:.2e} m³ of water, too little: give fewer and \
+                     larger cells, of two grain diameters",
+                    lattice.volume()
+                );
                 return Err(Error::Invalid(what));
             }
             self.storage[cell] = self.model.fluid.compressibility * pores;
@@ -81,13 +85,18 @@ impl<const N: usize> Water<N> {
                 self.least[cell] = cavitation.pressure - weight * depth * lattice.height;
             }
         }
-        self.fields.lost = Shared::new(vec![0.0; bed.id.len()]);
+        if self.books.kept {
+            self.fields.lost = Shared::new(vec![0.0; bed.id.len()]);
+            self.fields.dragged = Shared::new(vec![Row::ZERO; bed.id.len()]);
+        }
         self.freeze(bed, &places, &weights, images);
         self.drift_to(bed);
         if let Flow::Open(open) = &mut self.flow {
             let grains = bed.position.iter().take(bed.id.len());
             let grains = grains.map(|&row| (in_cells(&self.lattice, row.xyz()), volume(row)));
-            open.weigh(share::<N>(&self.lattice, grains), self.density)?;
+            let shares = share::<N>(&self.lattice, grains);
+            open.weigh(&self.lattice, shares, self.density)?;
+            self.events.convection = open.left_out();
         }
         Ok(())
     }
@@ -103,6 +112,8 @@ impl<const N: usize> Water<N> {
         let mut exchange = std::mem::take(&mut self.exchange);
         let lattice = &self.lattice;
         let flux = self.is_open().then(|| self.flux());
+        // Where pores are open the drag is that of each grain, and no device to hold it.
+        let towed = if self.is_open() { 1.0 } else { self.towed };
         // γ times ν T of each grain, were it quite loose.
         let mut fast = vec![Row::ZERO; exchange.slots.len()];
         for (k, (place, weight)) in places.iter().zip(weights).enumerate() {
@@ -112,7 +123,7 @@ impl<const N: usize> Water<N> {
             let flux = flux.as_ref().map(|flux| flux[lattice.cell_of_lbm(at)]);
             let resistance = self.resistance(porosity, flux.unwrap_or_default());
             let quite = porosity * porosity * resistance * weight.volume / solid;
-            let quite = DRAG_EVERY as f64 * quite;
+            let quite = towed * self.drags_every() as f64 * quite;
             let drag = weight.loose * quite;
             let (slot, lane) = exchange.at[k];
             let (slot, lane) = (slot as usize, lane as usize);
@@ -120,21 +131,8 @@ impl<const N: usize> Water<N> {
             exchange.lift[slot].0[lane] = self.lift[k];
             exchange.drag[slot].0[lane] = drag;
             fast[slot].0[lane] = drag * (quite * self.step / bed.mass[k]);
-            let pace = 0.5 * self.step / bed.mass[k];
-            let free = match bed.constraint[k].horizontal {
-                Horizontal::Free => pace,
-                Horizontal::Held | Horizontal::Driven => 0.0,
-            };
-            exchange.pace.push(Row([free, free, pace, 0.0]));
         }
-        let pass = Pass {
-            lattice,
-            kernels: &self.kernels,
-            exchange: &exchange,
-            frozen: &self.frozen,
-            fields: &self.fields,
-            walls: self.walls,
-        };
+        let pass = self.pass_over(&exchange);
         // Sums with the very weights of the steps to come.
         let [mut inverse, mut loose, fast] =
             pass.sums_of([&exchange.counts, &exchange.drag, &fast]);
@@ -172,21 +170,15 @@ impl<const N: usize> Water<N> {
             walls,
         };
         let mut grip = std::mem::take(&mut exchange.grip);
-        Pass {
-            lattice,
-            kernels: &self.kernels,
-            exchange: &exchange,
-            frozen: &self.frozen,
-            fields: &self.fields,
-            walls: self.walls,
-        }
-        .found(&self.frozen.ease, &mut grip);
+        self.pass_over(&exchange)
+            .found(&self.frozen.ease, &mut grip);
         exchange.grip = grip;
         self.exchange = exchange;
     }
 
     /// Weights, porosity and permeability anew; contents stay.
     pub(super) fn renew(&mut self, bed: &dem::Bed) -> Result<(), Error> {
+        let energy = self.books.kept.then(|| self.energy());
         self.weigh(bed)?;
         if self.is_open() {
             return Ok(());
@@ -206,6 +198,10 @@ impl<const N: usize> Water<N> {
             self.lay(bed, between, Some(&flux))?;
             self.events.relaid += 1;
         }
+        if let Some(energy) = energy {
+            self.book_renewal(energy);
+        }
+        self.feel_anew();
         Ok(())
     }
 }

@@ -149,7 +149,7 @@ fn rigid_translation_makes_no_pressure() {
         let way =
             bed.grains().snapshot().state.grains.displacement[0] - state.grains.displacement[0];
         assert!(way.x > 0.9 * check as f64 * STEP * speed.x);
-        let now = bed.water().snapshot();
+        let now = bed.snapshot();
         let most = now.pressure.iter().fold(0.0f64, |m, p| m.max(p.abs()));
         assert!((now.height * 4.0 / height - 1.0).abs() < 1e-12);
         assert!(most < 1.0, "{most:e} Pa after {check} steps");
@@ -215,7 +215,7 @@ fn uniform_compaction_raises_the_pressure_by_the_storage() {
     water.sides = [Side::FreeSlip, Side::FreeSlip];
     let mut bed = Coupled::<3>::new(model, state, water, None, 1).unwrap();
     bed.advance(1000).unwrap();
-    let now = bed.water().snapshot();
+    let now = bed.snapshot();
     let storage = WATER.compressibility * bed.ledger().pores;
     let theory = speed * AREA * 1000.0 * STEP / storage;
     let porosities = now.porosity.iter();
@@ -251,12 +251,7 @@ fn water_breaks_at_the_least_pressure_and_closes_again() {
         // Water comes from nowhere: content and room are one number.
         let off = (after.content - before.content + lifted) / lifted;
         assert!(off.abs() < 1e-9, "{off:e}");
-        (
-            bed.water().state(),
-            bed.report(),
-            after,
-            bed.water().snapshot(),
-        )
+        (bed.state(), bed.report(), after, bed.snapshot())
     };
     let (open, report, ledger, now) = run(-speed, None, 2048);
     let least = now.pressure.iter().fold(0.0f64, |m, p| m.min(*p));

@@ -34,28 +34,34 @@ pub fn soft_from(seed: u64) -> Bed {
 /// with load and time. A virgin bed yields: 8.1e9 Pa where 10 kPa come at once, 9.3e9 where they
 /// come slowly, and Terzaghi's pressure at T = 0.4 with the one is 15 % above that with the other.
 pub fn stiff_from(seed: u64) -> Bed {
+    stiffer_from(seed, 100.0)
+}
+
+/// The same so many times stiffer than `soft_from`.
+pub fn stiffer_from(seed: u64, times: f64) -> Bed {
+    let faster = times.sqrt();
     let mut model = model(law(), STRESS);
     let ContactLaw::Linear(law) = &mut model.law else {
         unreachable!("the law is linear");
     };
-    law.normal_stiffness *= 100.0;
-    law.normal_damping *= 10.0;
+    law.normal_stiffness *= times;
+    law.normal_damping *= faster;
     if let Some(sliding) = &mut law.sliding {
-        sliding.stiffness *= 100.0;
-        sliding.damping *= 10.0;
+        sliding.stiffness *= times;
+        sliding.damping *= faster;
     }
-    model.step *= 0.1;
+    model.step /= faster;
     let mut state = pressed_from(seed);
     state.contacts.clear();
     // Pressed anew, then loaded by twice as much as later, and unloaded: what slides has slid.
     let sudden = [0.0, 2.0 * LOAD, 0.0, 2.0 * LOAD, 0.0];
-    for (more, times) in sudden.into_iter().zip([12, 2, 2, 2, 4]) {
+    for (more, turns) in sudden.into_iter().zip([12, 2, 2, 2, 4]) {
         let damped = with_load(&model, |load| StressLoad {
             mean: STRESS + more,
             damping: 3e4,
             ..load
         });
-        for _ in 0..times {
+        for _ in 0..turns {
             let mut solver = Solver::new(damped.clone(), state, 1).unwrap();
             solver.advance(8000).unwrap();
             state = solver.snapshot().state;
@@ -65,7 +71,7 @@ pub fn stiff_from(seed: u64) -> Bed {
         }
     }
     state.time = 0.0;
-    let m = skeleton_stiffness(&model, &state, LOAD, 0.006).unwrap();
+    let m = skeleton_stiffness(&model, &state, LOAD, 0.06 / faster).unwrap();
     (model, state, m)
 }
 

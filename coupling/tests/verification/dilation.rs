@@ -36,7 +36,7 @@ pub fn dilated(permeability: f64, steps: u64) -> (Vec<f64>, Vec<f64>, f64) {
     model.walls[1].motion = WallMotion::Velocity(-RATE * height);
     let mut bed = Coupled::<3>::new(model, state, water(permeability), None, 1).unwrap();
     bed.advance(steps).unwrap();
-    let now = bed.water().snapshot();
+    let now = bed.snapshot();
     let layers = now.pressure.chunks(25);
     let means = layers.map(|layer| layer.iter().sum::<f64>() / 25.0);
     let report = bed.report();

@@ -78,7 +78,7 @@ fn energy_of_a_bed_that_drains_is_found_to_the_last_term() {
 
 /// Σ Δp² A/(R Δz) along z [W], in which direction this bed drains, with R = μ/k.
 fn power_of_darcy(bed: &Coupled<3>) -> f64 {
-    let now = bed.water().snapshot();
+    let now = bed.snapshot();
     let conducts = 1e-12 / WATER.viscosity * AREA / 25.0 / now.height;
     let each = (0..100).map(|cell| {
         let p = now.pressure[cell];
@@ -93,14 +93,21 @@ fn power_of_darcy(bed: &Coupled<3>) -> f64 {
 /// Grains thrown about in still water under gravity: they lose to it, and buoyancy works.
 #[test]
 fn energy_that_loose_grains_lose_is_found() {
-    losses::<3>(water(1e-10), 2000);
+    let mut each = water(1e-10);
+    each.exchange = Some(1);
+    losses::<3>(each, 2000, 1e-6);
     // Cells of one diameter, where walls are in the mean of faces.
     let mut fine = water(1e-11);
     fine.cells = [10, 10, 9];
-    losses::<5>(fine, 300);
+    fine.exchange = Some(1);
+    losses::<5>(fine, 300, 1e-6);
+    // Of several steps the books do not know what the last one brought, but the mean.
+    let mut held = water(1e-10);
+    held.exchange = Some(2);
+    losses::<3>(held, 2000, 1e-3);
 }
 
-fn losses<const N: usize>(water: Model, steps: u64) {
+fn losses<const N: usize>(water: Model, steps: u64, part: f64) {
     let mut heavy = model(law(), STRESS);
     heavy.gravity = DVec3::new(0.0, 0.0, -9.81);
     let mut bed = Coupled::<N>::new(heavy, shaken(5e-2), water, None, 1).unwrap();
@@ -108,7 +115,7 @@ fn losses<const N: usize>(water: Model, steps: u64) {
     let (grains, water) = (bed.grains().snapshot().ledger, bed.ledger());
     let lift = grains.work_companion + water.work_grains;
     let lost = [water.dissipated_darcy, water.dissipated_loose];
-    judge(&grains, &water, 2e-4, &[lift, lost[0], lost[1]]);
+    judge(&grains, &water, part, &[lift, lost[0], lost[1]]);
 }
 
 /// A lid is lifted from a sealed bed until the water breaks: what it takes to open vapour is kept.
@@ -116,6 +123,7 @@ fn losses<const N: usize>(water: Model, steps: u64) {
 fn energy_that_opens_vapour_is_found() {
     let mut broken = sealed(1e-12);
     broken.cavitation = Some(Cavitation { pressure: -1e5 });
+    broken.exchange = Some(1);
     let mut lifted = model(law(), STRESS);
     lifted.walls[1].motion = WallMotion::Velocity(-0.02);
     let mut bed = Coupled::<3>::new(lifted, pressed(), broken, None, 1).unwrap();
@@ -135,7 +143,9 @@ fn books_do_not_change_the_run() {
     let run = |ledger: bool| -> (State, Ledger) {
         let mut model = model(law(), STRESS);
         model.ledger = ledger;
-        let mut bed = Coupled::<3>::new(model, shaken(0.5), water(1e-12), None, 1).unwrap();
+        let mut water = water(1e-12);
+        water.exchange = Some(1);
+        let mut bed = Coupled::<3>::new(model, shaken(0.5), water, None, 1).unwrap();
         bed.advance(300).unwrap();
         assert!(bed.grains().searches() > 1, "no search was made");
         (bed.grains().snapshot().state, bed.ledger())

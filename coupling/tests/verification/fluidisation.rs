@@ -73,7 +73,7 @@ const LOW: usize = 4;
 const HIGH: usize = 20;
 
 fn read(bed: &Coupled<3>, flux: f64) -> Reading {
-    let now = bed.water().snapshot();
+    let now = bed.snapshot();
     let layer = |k: usize, of: &[f64]| of[4 * k..4 * (k + 1)].iter().sum::<f64>() / 4.0;
     let drop = layer(LOW, &now.pressure) - layer(HIGH, &now.pressure);
     let pores = (LOW..HIGH).map(|k| 0.5 * (layer(k, &now.porosity) + layer(k + 1, &now.porosity)));
@@ -170,7 +170,7 @@ fn momentum_goes_from_grains_to_water_and_none_is_lost() {
     let law = Resistance::DiFelice { diameter: DIAMETER };
     let water = Model {
         // Porosities that change take momentum along, which is convection: not solved.
-        renewal: 10_000,
+        renewal: Some(10_000),
         ..Model::new([3, 3, 6], WATER, law)
     };
     let mut bed = Coupled::<3>::new(grains, state, water, None, 1).unwrap();

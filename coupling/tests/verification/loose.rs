@@ -19,6 +19,13 @@ pub const WATER: Fluid = Fluid {
     compressibility: 4.6e-10,
 };
 
+/// Syrup: three hundred times as viscous. Grains settle in it as Stokes says, at a Reynolds number of
+/// 0.01.
+pub const SYRUP: Fluid = Fluid {
+    viscosity: 0.3,
+    ..WATER
+};
+
 /// A box of `width` [m] across and `height` between two walls that are held.
 pub fn model(width: [f64; 2]) -> dem::Model {
     let wall = |name: &str, normal| Wall {
@@ -68,21 +75,33 @@ pub fn grains(places: &[DVec3], height: f64) -> State {
     state
 }
 
-/// Grains in a closed box of water with cells of about `cell` [m].
-pub fn closed(law: Resistance, places: &[DVec3], size: [f64; 3], cells: [usize; 3]) -> Coupled<3> {
-    let water = Model::new(cells, WATER, law);
-    let state = grains(places, size[2]);
-    Coupled::new(model([size[0], size[1]]), state, water, None, 1).unwrap()
+/// Grains in a closed box of `fluid`, with books of the energy.
+pub fn closed(
+    fluid: Fluid,
+    law: Resistance,
+    places: &[DVec3],
+    size: [f64; 3],
+    cells: [usize; 3],
+) -> Coupled<3> {
+    let water = Model::new(cells, fluid, law);
+    let mut model = model([size[0], size[1]]);
+    model.ledger = true;
+    Coupled::new(model, grains(places, size[2]), water, None, 1).unwrap()
 }
 
 /// Velocity at which the drag of `law` holds grains of this solid fraction in suspension [m/s]:
 /// R q = c Δρ g.
 pub fn balance(law: Resistance, solid: f64) -> f64 {
-    let weight = (DENSITY - WATER.density) * GRAVITY;
+    balance_in(WATER, law, solid)
+}
+
+/// The same in any `fluid`.
+pub fn balance_in(fluid: Fluid, law: Resistance, solid: f64) -> f64 {
+    let weight = (DENSITY - fluid.density) * GRAVITY;
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..100 {
         let q = 0.5 * (low + high);
-        let more = law.at(&WATER, 1.0 - solid, q) * q < solid * weight;
+        let more = law.at(&fluid, 1.0 - solid, q) * q < solid * weight;
         *if more { &mut low } else { &mut high } = q;
     }
     low

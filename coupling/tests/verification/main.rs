@@ -7,6 +7,7 @@ mod dilation;
 mod energy;
 mod fluidisation;
 mod loose;
+mod open_books;
 mod refusals;
 mod seepage;
 mod settling;

@@ -33,6 +33,21 @@ fn an_interval_that_invents_strength_is_refused_and_a_long_one_warned_of() {
     );
 }
 
+#[test]
+fn an_exchange_that_feeds_waves_or_does_not_fit_is_refused() {
+    let mut long = water(1e-12);
+    long.exchange = Some(4);
+    let said = refusal(model(law(), STRESS), long.clone());
+    assert!(
+        said.contains("feeds waves") && said.contains("give an exchange of 2 steps"),
+        "{said}"
+    );
+    long.exchange = Some(2);
+    long.interval = Some(3);
+    let said = refusal(model(law(), STRESS), long);
+    assert!(said.contains("no multiple of an exchange of 2"), "{said}");
+}
+
 /// S M = 1.6 of stiff grains and real water: ten times softer, it takes 6 % of a load, not 38 %.
 #[test]
 fn water_softened_until_it_changes_the_answer_is_refused_and_told_before() {

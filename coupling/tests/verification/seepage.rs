@@ -15,7 +15,7 @@ fn departure(law: Resistance, fluid: Fluid, flux: f64, steps: u64) -> f64 {
     water.sides = [Side::Flux(Signal::Steady(flux)), drained()];
     let mut bed = Coupled::<3>::new(model, pressed(), water, None, 1).unwrap();
     bed.advance(steps).unwrap();
-    let now = bed.water().snapshot();
+    let now = bed.snapshot();
     let layer = |k: usize, of: &[f64]| of[25 * k..25 * (k + 1)].iter().sum::<f64>() / 25.0;
     let resists = |k: usize| {
         let cells = &now.porosity[25 * k..25 * (k + 1)];

@@ -5,7 +5,7 @@
 
 use crate::balance::shake;
 use crate::bed::*;
-use crate::consolidation::{Bed, LOAD, errors, soft_from, stiff_from, terzaghi};
+use crate::consolidation::{Bed, LOAD, errors, soft_from, stiff_from, stiffer_from, terzaghi};
 use crate::dilation::dilated;
 use crate::shear::sheared;
 use coupling::{Coupled, Model};
@@ -152,7 +152,12 @@ fn study_map() {
 #[ignore = "a study: five minutes"]
 fn study_loose() {
     let mut rows = Vec::new();
-    let beds = [(1e7, soft_from as fn(u64) -> Bed, 3), (1e9, stiff_from, 6)];
+    let beds = [
+        (1e7, soft_from as fn(u64) -> Bed, 3),
+        (4e7, |seed| stiffer_from(seed, 4.0), 3),
+        (1e8, |seed| stiffer_from(seed, 10.0), 3),
+        (1e9, stiff_from, 6),
+    ];
     for (contact, bed_from, seeds) in beds {
         for seed in 1..=seeds {
             let bed = bed_from(seed);
@@ -203,20 +208,22 @@ fn strength(seed: u64, water: Option<Model>) -> [f64; 3] {
     [shear, sum, (squares - sum * sum).max(0.0).sqrt()]
 }
 
-/// Shear strength of beds that drain partly, over intervals and the weight of loose grains.
+/// Shear strength of beds that drain partly, over exchanges, intervals and the weight of loose grains.
 #[test]
 #[ignore = "a study: two minutes"]
 fn study_shear() {
     let mut rows = Vec::new();
     for seed in 1..=3 {
-        let mut add = |permeability: f64, interval: u64, loose: f64| {
+        let mut add = |permeability: f64, exchange: u64, interval: u64, loose: f64| {
             let mut water = water(permeability);
+            water.exchange = Some(exchange);
             water.interval = Some(interval);
             water.loose = loose;
             let [shear, pressure, noise] = strength(seed, Some(water)).map(|x| format!("{x:.0}"));
             rows.push(row([
                 &seed,
                 &format!("{permeability:e}"),
+                &exchange,
                 &interval,
                 &loose,
                 &shear,
@@ -225,21 +232,26 @@ fn study_shear() {
             ]));
         };
         for interval in [1, 2, 4, 8, 16] {
-            add(1e-11, interval, 1.0);
+            add(1e-11, 1, interval, 1.0);
+        }
+        for [exchange, interval] in [[2, 2], [2, 4], [2, 8]] {
+            add(1e-11, exchange, interval, 1.0);
         }
         for permeability in [1e-10, 1e-9] {
-            add(permeability, 1, 1.0);
+            for exchange in [1, 2] {
+                add(permeability, exchange, exchange, 1.0);
+            }
         }
-        add(1e-10, 2, 1.0);
+        add(1e-10, 1, 2, 1.0);
         for loose in [0.5, 2.0, 4.0] {
-            add(1e-11, 1, loose);
+            add(1e-11, 1, 1, loose);
         }
         let [shear, ..] = strength(seed, None).map(|x| format!("{x:.0}"));
-        rows.push(row([&seed, &"dry", &"", &"", &shear, &"", &""]));
+        rows.push(row([&seed, &"dry", &"", &"", &"", &shear, &"", &""]));
     }
     write(
         "shear.csv",
-        "seed,permeability,interval,f,shear stress,pressure,noise",
+        "seed,permeability,exchange,interval,f,shear stress,pressure,noise",
         &rows,
     );
 }

@@ -41,6 +41,9 @@ impl Companion for Tampered {
     fn follow(&self, moved: &Moved, threads: &Threads) {
         self.water.follow(moved, threads);
     }
+    fn exchanges(&self, step: u64) -> bool {
+        self.water.exchanges(step)
+    }
     fn wants_to_be_alone(&self, step: u64) -> bool {
         self.water.wants_to_be_alone(step)
     }

@@ -2,8 +2,10 @@
 //!
 //! A solver [with a companion](Solver::with_companion) reads in each step what pushes its grains
 //! (`companions`, by row) and its walls (`sums` from the slot COMPANION on, and `reliefs`: how much
-//! of that moves a wall). Who goes along fills these between two steps, by dispatches of its own in
-//! the same recording, from the solver's own arrays ([`Solver::arrays`]); nothing is copied. A
+//! of that moves a wall). Who goes along fills these in an exchange between two steps, by dispatches of
+//! its own in the same recording, from the solver's own arrays ([`Solver::arrays`]); nothing is copied.
+//! What it has filled is held until the next exchange: a step without one is a step of dry
+//! grains that reads 16 bytes more for each. A
 //! search reorders the rows of `companions` and of `kept`, which is the companion's own.
 //!
 //! A group of steps is recorded by [`begin`](Solver::begin_group), [`record_next`](Solver::record_next)
@@ -19,11 +21,13 @@ use super::control::Control;
 use super::fixed::Grid;
 use super::look::Look;
 use super::numbers;
+use super::scene::Relief;
 use super::search::Search;
 use super::solver::Solver;
 use super::steps::GROUP;
 use super::wide::Wide;
 use crate::{Error, Model, State};
+use glam::DVec3;
 use shaders::{Array, Bindable, Device, Part, Reading, Recording};
 
 /// Arrays of a companion.
@@ -35,8 +39,8 @@ pub(super) struct Companion {
     pub width: u32,
     /// Normal forces of the contacts of each grain [N].
     pub loads: Array<f32>,
-    /// Of each wall, in three slots: share of the force that moves it, and what is taken off [N].
-    pub reliefs: Array<[f32; 2]>,
+    /// Of each wall, in the last exchange and the one before.
+    pub reliefs: Array<Relief>,
 }
 
 impl Companion {
@@ -51,7 +55,7 @@ impl Companion {
             kept: device.array("kept", width * grains)?,
             width: width as u32,
             loads: device.array("loads", grains)?,
-            reliefs: device.array("reliefs", 3 * walls)?,
+            reliefs: device.array("reliefs", 2 * walls)?,
         })
     }
 
@@ -99,13 +103,13 @@ impl Solver {
         self.numbers.parts.grains
     }
 
-    /// Force of the companion on each wall along minus its normal, of this instant [N].
+    /// Force of the companion on each wall along minus its normal, of its last exchange [N].
     ///
     /// # Errors
     /// [`Error::Device`] when the device fails.
     pub fn forces_of_companion(&self) -> Result<Vec<f64>, Error> {
         let slots = self.numbers.slots;
-        let first = slots.companion(self.steps_made());
+        let first = slots.held_companion();
         let mut reading = self.device.reading();
         let part = reading.add(&self.arrays.sums, first..first + slots.walls);
         let words = reading.wait()?.take(part);
@@ -114,6 +118,16 @@ impl Solver {
             units * self.numbers.units.force
         };
         Ok(words.iter().map(force).collect())
+    }
+
+    /// Force of the companion on each grain, of its last exchange [N], in the order of the rows.
+    ///
+    /// # Errors
+    /// [`Error::Device`] when the device fails.
+    pub fn pushes_of_companion(&self) -> Result<Vec<DVec3>, Error> {
+        let rows = self.device.read(&self.companion().forces)?;
+        let force = |&[x, y, z, _]: &[f32; 4]| DVec3::new(x.into(), y.into(), z.into());
+        Ok(rows.iter().map(force).collect())
     }
 
     /// Where the walls are along their axes [m], without the rest of a snapshot.

@@ -3,7 +3,7 @@
 
 use super::control::Control;
 use super::fixed::Place;
-use super::scene::{Body, Motion, Own};
+use super::scene::{Body, Motion, Own, Relief};
 use super::solver::Solver;
 use super::steps::THREADS;
 use crate::Error;
@@ -14,7 +14,7 @@ use shaders::{Array, Bindable, Device};
 pub(super) struct Look {
     pub control: Control,
     pub sums: Vec<[u32; 2]>,
-    pub reliefs: Vec<[f32; 2]>,
+    pub reliefs: Vec<Relief>,
     pub bodies: Vec<Body>,
     pub places: Vec<Place>,
     pub motions: Vec<Motion>,

@@ -96,6 +96,19 @@ pub(super) fn spread(grains: usize) -> usize {
     (grains / 2048).next_power_of_two().clamp(32, 1 << 14)
 }
 
+/// What of a companion's force moves a wall. Twin: shaders/dem/boundary.wgsl
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(super) struct Relief {
+    /// Share of the force.
+    pub share: f32,
+    /// What is taken off [N].
+    pub off: f32,
+    /// Step of the exchange.
+    pub since: u32,
+    pub unused: u32,
+}
+
 /// Where the running sums lie: as in boundary.wgsl.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slots {
@@ -142,13 +155,18 @@ impl Slots {
         self.losses() + 4 * self.spread
     }
 
-    /// Force of a companion on the first wall in the slot of `step`.
-    pub fn companion(self, step: u64) -> usize {
-        self.losses_read() + 4 + (step % 3) as usize * self.walls
+    /// Force of a companion on the first wall, as it is added up.
+    fn companion(self) -> usize {
+        self.losses_read() + 4
+    }
+
+    /// The same of its last exchange, which is held; those of the one before follow.
+    pub fn held_companion(self) -> usize {
+        self.companion() + self.walls
     }
 
     /// All of them.
     pub fn len(self) -> usize {
-        self.companion(0) + if self.companion { 3 * self.walls } else { 0 }
+        self.companion() + if self.companion { 3 * self.walls } else { 0 }
     }
 }

@@ -60,11 +60,16 @@ impl Look {
     /// Force of a companion on wall `k` in `step`, as far as it moves it [N].
     pub(super) fn companion_force(&self, solver: &Solver, step: u64, k: usize) -> f64 {
         let slots = solver.numbers.slots;
-        let relief = (step % 3) as usize * slots.walls + k;
-        let Some(&[share, off]) = self.reliefs.get(relief) else {
+        let Some(last) = self.reliefs.get(k) else {
             return 0.0;
         };
-        f64::from(share) * self.force(solver, slots.companion(step) + k) - f64::from(off)
+        let row = match step < last.since.into() {
+            true => slots.walls + k,
+            false => k,
+        };
+        let relief = self.reliefs[row];
+        let force = self.force(solver, slots.held_companion() + row);
+        f64::from(relief.share) * force - f64::from(relief.off)
     }
 
     /// Forces of this instant: walls, held and driven layer [N].

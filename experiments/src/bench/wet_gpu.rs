@@ -31,6 +31,10 @@ pub struct WetRow {
     pub grains: usize,
     /// Number of cells.
     pub cells: usize,
+    /// Grain steps from one exchange to the next.
+    pub exchange: u64,
+    /// Dispatches of a step in the mean, those of searches and renewals included.
+    pub dispatches_per_step: f64,
     /// Grain steps from one fluid step to the next, and steps of the lattice in each.
     pub interval: u64,
     /// Steps of the lattice in each.
@@ -98,13 +102,16 @@ fn measure<const N: usize>(device: &Device, bed: &Bed, rounds: u32) -> Result<We
     dry.advance(steps)?;
     wet.advance(steps)?;
     let mut samples = Vec::new();
+    let mut dispatches_per_step = 0.0;
     for _ in 0..rounds {
         let clock = Instant::now();
         dry.advance(steps)?;
         let dry = clock.elapsed().as_secs_f64();
+        let before = device.traffic().dispatches;
         let clock = Instant::now();
         wet.advance(steps)?;
         samples.push([dry, clock.elapsed().as_secs_f64()].map(|time| 1e6 * time / steps as f64));
+        dispatches_per_step = (device.traffic().dispatches - before) as f64 / steps as f64;
     }
     let report = wet.read()?.1;
     let sections = wet.time_steps(TIMED)?.unwrap_or_default();
@@ -117,6 +124,8 @@ fn measure<const N: usize>(device: &Device, bed: &Bed, rounds: u32) -> Result<We
         hardware,
         grains,
         cells,
+        exchange: report.exchange,
+        dispatches_per_step,
         interval: report.interval,
         sub_steps: report.sub_steps,
         us_of_dry_step: of(|[dry, _]| *dry).0,
@@ -136,12 +145,12 @@ fn measure<const N: usize>(device: &Device, bed: &Bed, rounds: u32) -> Result<We
 fn print(row: &WetRow, rounds: u32) {
     let [least, most] = row.coupled_over_dry_range;
     println!(
-        "{} wet grains, {}, {} cells, fluid every {} steps in {}, rounds: {rounds}, {}",
-        row.grains, row.case, row.cells, row.interval, row.sub_steps, row.device
+        "{} wet grains, {}, {} cells, exchange every {} steps, fluid every {} in {}, rounds: {rounds}, {}",
+        row.grains, row.case, row.cells, row.exchange, row.interval, row.sub_steps, row.device
     );
     println!(
-        "  dry step {:.1} us, coupled {:.1} us, {:.2} times as long ({least:.2}..{most:.2})",
-        row.us_of_dry_step, row.us_of_coupled_step, row.coupled_over_dry
+        "  dry step {:.1} us, coupled {:.1} us, {:.2} times as long ({least:.2}..{most:.2}), {:.1} dispatches",
+        row.us_of_dry_step, row.us_of_coupled_step, row.coupled_over_dry, row.dispatches_per_step
     );
     for section in &row.sections {
         println!(

@@ -49,7 +49,7 @@ fn check_grains(scene: &Scene, backend: Backend, threads: usize) -> Result<ExitC
     step(scene, &facts);
     collisions(scene, &facts);
     if let Some(water) = &scene.water {
-        pores::facts(scene, water, facts.height);
+        pores::facts(scene, water);
     }
     println!();
     for phase in &scene.phases {

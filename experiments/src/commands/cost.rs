@@ -3,6 +3,7 @@
 use super::calibrate::calibrate;
 use super::check::line;
 use crate::backend::Machine;
+use crate::engine::see_water;
 use crate::protocol;
 use crate::run::expected_steps;
 use crate::scene::Scene;
@@ -56,7 +57,7 @@ pub fn duration(seconds: f64) -> String {
 /// What the scene takes on the device, and what would fit.
 ///
 /// # Errors
-/// A box that is too large for the GPU.
+/// A box that is too large for the GPU, water that it will refuse.
 pub fn memory_on_device(scene: &Scene, adapter: &shaders::Adapter) -> Result<()> {
     let each = protocol::models(scene).map(|model| Memory::of(&model, &scene.start));
     let each = each.collect::<Result<Vec<_>, _>>()?;
@@ -77,6 +78,10 @@ pub fn memory_on_device(scene: &Scene, adapter: &shaders::Adapter) -> Result<()>
             bounds.binding as f64 / MIB
         ),
     );
+    if let Some(bytes) = see_water(scene, adapter)? {
+        let mebibytes = bytes as f64 / MIB;
+        line("  with the water", &format!("{mebibytes:.1} MiB more"));
+    }
     Ok(())
 }
 

@@ -101,7 +101,7 @@ impl Wet {
         of!(
             self,
             bed => Ok(PoreReading {
-                now: bed.water().snapshot(),
+                now: bed.snapshot(),
                 report: bed.report(),
                 ledger: bed.ledger(),
                 on_walls: bed.water().on_walls(),
@@ -132,7 +132,7 @@ impl Wet {
     /// # Errors
     /// A device that fails.
     pub fn water_state(&self) -> Result<coupling::State, Error> {
-        of!(self, bed => Ok(bed.water().state()), bed.state())
+        of!(self, bed => Ok(bed.state()), bed.state())
     }
 
     /// What the numbers of the coupling are.

@@ -4,6 +4,7 @@ pub mod catalogue;
 mod contacts;
 pub mod fluid;
 mod grains;
+mod hdf;
 pub mod netcdf;
 mod pore_state;
 pub mod pores;

@@ -4,7 +4,7 @@
 //! `vapour`, one row a grain in the order of identities: `load`, and the `stiffness` of the
 //! skeleton, if it is known.
 
-use super::state::{get, get_rows, put, put_rows};
+use super::hdf::{get, get_rows, put, put_rows};
 use crate::protocol::PastWater;
 use anyhow::{Result, ensure};
 use coupling::State;

@@ -2,6 +2,7 @@
 
 use super::catalogue::PROGRESS;
 use super::netcdf::{create, define, describe, put};
+use super::pores::ON_CPU_ALONE;
 use super::{Frame, Header, provenance};
 use anyhow::Result;
 use dem::output::{Storage, Variable};
@@ -23,6 +24,8 @@ pub(super) struct Rows {
     rows: usize,
     /// Names of the phases, if there is a protocol with a place in it for each row.
     phases: Option<Vec<String>>,
+    /// Does a graphics device compute?
+    on_gpu: bool,
     /// The last phase of which the coupling with the water was described.
     described: Option<u32>,
 }
@@ -61,6 +64,7 @@ impl Rows {
         Ok(Self {
             file,
             rows: 0,
+            on_gpu: header.backend == "gpu",
             phases: phases.map(<[String]>::to_vec),
             described: None,
         })
@@ -72,6 +76,10 @@ impl Rows {
     pub fn define(&mut self, variable: &Variable, chunk: &[usize]) -> Result<()> {
         let dims = [&["time"], variable.dims].concat();
         define(&mut self.file, variable, &dims, chunk)?;
+        if self.on_gpu && ON_CPU_ALONE.contains(&variable.name) {
+            let comment = "no number: computed with --backend cpu alone";
+            describe(&mut self.file, variable.name, "comment", comment)?;
+        }
         match self.phases {
             Some(_) => describe(&mut self.file, variable.name, "coordinates", "phase strain"),
             None => Ok(()),

@@ -4,7 +4,7 @@
 //! the `lattice_density` by which populations are measured, and one row a cell, x fastest: `pressure`, `flux`, and the 19 `populations` in lattice units. Attributes as
 //! in the state of grains.
 
-use super::state::{finish, get, get_rows, put, put_rows, start};
+use super::hdf::{check_layout, finish, get, get_rows, put, put_rows, start};
 use super::{Header, partial};
 use anyhow::{Context, Result, ensure};
 use hdf5::File;
@@ -59,7 +59,7 @@ fn write(path: &Path, saved: &SavedWater, header: &Header) -> Result<()> {
 
 fn read(path: &Path) -> Result<SavedWater> {
     let file = File::open(path)?;
-    super::state::check_layout(&file)?;
+    check_layout(&file)?;
     let group = file
         .group("water")
         .context("it is a state of grains, without water")?;

@@ -136,7 +136,10 @@ fn write_all<F: Moment>(dir: &Path, mut files: Files<F>, frames: &Receiver<F>) -
             };
             file.write(frame).with_context(|| {
                 let (path, time) = (dir.join(kind.file_name()), frame.time());
-                format!("cannot write {} at t = {time} s", path.display())
+                format!(
+                    "cannot write {} at t = {time} s (is there room on the disk?)",
+                    path.display()
+                )
             })?;
         }
         if synchronised.elapsed() >= SYNC_EVERY {
@@ -148,8 +151,13 @@ fn write_all<F: Moment>(dir: &Path, mut files: Files<F>, frames: &Receiver<F>) -
 
 fn sync<F>(dir: &Path, files: &mut Files<F>) -> Result<()> {
     for (kind, file) in files {
-        file.sync()
-            .with_context(|| format!("cannot write {}", dir.join(kind.file_name()).display()))?;
+        file.sync().with_context(|| {
+            let path = dir.join(kind.file_name());
+            format!(
+                "cannot write {} (is there room on the disk?)",
+                path.display()
+            )
+        })?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use super::Scene;
 use crate::protocol;
-use crate::start::{LOOSE_FRACTION, highest};
+use crate::start::highest;
 use dem::Grains;
 
 /// Solid fraction of the loosest bed that carries a load: spheres at high friction jam at
@@ -33,19 +33,16 @@ impl Room {
         largest_radius: 0.0,
     };
 
-    /// Of `grains` over `area` [m²], still without places if the start is `loose`.
-    pub fn of(grains: &Grains, area: f64, loose: bool) -> Self {
+    /// Of `grains` over `area` [m²], still without places if they are thrown in, to fill this
+    /// fraction of the room.
+    pub fn of(grains: &Grains, area: f64, loose: Option<f64>) -> Self {
         let volume: f64 = (0..grains.len()).map(|k| grains.volume(k)).sum();
         let radius = || grains.radius.iter().copied();
         let largest_radius = radius().fold(0.0, f64::max);
         // The uppermost grains stand out.
         let at = |fraction| volume / (fraction * area) + 2.0 * largest_radius;
         Self {
-            start: if loose {
-                at(LOOSE_FRACTION)
-            } else {
-                highest(grains)
-            },
+            start: loose.map_or_else(|| highest(grains), at),
             settled: at(LOOSEST),
             smallest_radius: radius().fold(f64::INFINITY, f64::min),
             largest_radius,
@@ -101,6 +98,7 @@ impl Scene {
             })
         };
         let mut warnings: Vec<String> = sheared.filter_map(warning).collect();
+        warnings.extend(self.phases.iter().flat_map(super::water::pores::warnings));
         if self.water.is_none() && self.past.water.is_some() {
             let what = "the state has water between its grains, and the scene no [water]";
             warnings.push(format!("{what}: they go on dry"));

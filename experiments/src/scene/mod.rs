@@ -152,7 +152,10 @@ fn read(reader: &Reader) -> Option<Scene> {
         .map_or(1.0, |g| (0..g.len()).map(|k| g.volume(k)).sum());
     let diameter = grains.as_ref().map_or(1.0, largest_diameter);
     let law = contact::read(&root, mass / count);
-    let loose = matches!(origin, Some(Source::Loose { .. }));
+    let loose = match &origin {
+        Some(Source::Loose { fraction, .. }) => Some(*fraction),
+        _ => None,
+    };
     let area = bounds.map_or(1.0, |b| b.domain.area());
     let context = phase::Context {
         area,
@@ -167,41 +170,50 @@ fn read(reader: &Reader) -> Option<Scene> {
         gravity: bounds.map_or(glam::DVec3::ZERO, |b| b.gravity),
     };
     let mean_diameter = grains.as_ref().map_or(1.0, |g| 2.0 * g.mean_radius());
+    let start = match (&origin, grains, bounds, &stated) {
+        (Some(origin), Some(grains), Some(bounds), Some(stated))
+            if check_width(reader, stated, diameter) =>
+        {
+            let placed = origin.place(grains, &bounds.domain, bounds.height, seed);
+            placed
+                .map_err(|message| reader.wrong(&["box", "size"], message))
+                .ok()
+        }
+        _ => None,
+    };
+    let wet = root.has("water");
+    let water = pores::Begun::of(&root);
+    // Where the water is wrong, phases may still speak of it.
+    let edges = match &water {
+        Some(water) => Some(water.edges()),
+        None => wet.then(pores::Edges::tight),
+    };
+    let phases = phase::read(&root, &context, edges.as_ref());
     let around = bounds
-        .filter(|_| grains.is_some())
+        .filter(|_| origin.is_some())
         .map(|bounds| pores::Around {
             size: bounds.domain.size,
             periodic: bounds.domain.periodic,
             diameter: mean_diameter,
-            height: match &origin {
-                Some(Source::State(saved)) => -saved.state.walls[protocol::TOP].offset,
-                _ => volume / (protocol::SETTLED * area),
+            height: match &start {
+                Some(start) => protocol::height_when_wet(&phases, start, area),
+                // Something is wrong, and only that is told.
+                None => volume / (protocol::SETTLED * area),
             },
             cells: past.water.as_ref().map(|water| water.cells),
         });
-    let wet = root.has("water");
-    let water = pores::read(&root, around.as_ref());
-    // Where the water is wrong, phases may still speak of it.
-    let edges = match &water {
-        Some(water) => Some(water.edges.clone()),
-        None => wet.then(pores::Edges::tight),
-    };
-    let phases = phase::read(&root, &context, edges.as_ref());
+    let water = water.and_then(|water| water.finish(around.as_ref()));
     let [top, bottom] = walls(&root);
     let rough = [top, bottom].map(|surface| surface == Surface::Full);
     let output = output::read(&root, &phases, mean_diameter, rough, wet);
-    let (origin, grains, bounds, stated) = (origin?, grains?, bounds?, stated?);
+    let (origin, bounds, start) = (origin?, bounds?, start?);
     let (output, _) = (output?, law?);
     if wet && water.is_none() {
         return None;
     }
-    if phases.is_empty() || !check_width(reader, &stated, diameter) {
+    if phases.is_empty() {
         return None;
     }
-    let start = origin
-        .place(grains, &bounds.domain, bounds.height, seed)
-        .map_err(|message| reader.wrong(&["box", "size"], message))
-        .ok()?;
     let mut scene = Scene {
         title: title.unwrap_or_default().into(),
         question: question.map(Into::into),
@@ -233,6 +245,9 @@ fn read(reader: &Reader) -> Option<Scene> {
         .ok()?;
     output::check(&mut scene, reader);
     plausible::check(&scene, reader);
+    if let Some(water) = &scene.water {
+        pores::check(&scene, water, reader);
+    }
     // The first bed is there already.
     let first = &scene.phases[0];
     let reference = scene.past.reference_of(first);

@@ -1,6 +1,6 @@
 //! What must balance on the GPU by itself: forces, and the volume of water.
 
-use super::bed::{AREA, STRESS, model, pressed, sheared, water};
+use super::bed::{AREA, LOADED, STRESS, model, pressed, sheared, water};
 use crate::lab::Suite;
 use coupling::gpu::Coupled;
 use glam::DVec3;
@@ -12,36 +12,37 @@ pub fn list(suite: &mut Suite) {
     suite.gpu("wet_sealed_beds_keep_their_water", sealed);
 }
 
-/// The water pushes grains by as much less on the bottom than on the top as they are pushed up, and
-/// nowhere sideways; contacts push them as walls are pushed. With weights that are those of the
-/// scatter to the last bit this holds to the rounding of the sums of some hundred f32.
+/// What the water pushes grains with, before contacts: all of it together is what it pushes the top by
+/// more than the bottom, in steps that drag loose grains (10, 12) as in others. Weights of the
+/// gather are those of the scatter to the last bit, so this holds to the rounding of some hundred
+/// sums in f32; a gather that is off by 1e-5 is seen where no loose
+/// grains are dragged. Contacts are left out: their rounding, of
+/// forces a hundred times larger, would hide it.
 fn forces(device: &Device) {
     balanced::<3>(device, [3, 3, 3]);
     balanced::<5>(device, [6, 6, 7]);
 }
 
 fn balanced<const N: usize>(device: &Device, cells: [usize; 3]) {
-    let (grains, state) = sheared();
+    let (mut grains, state) = sheared();
+    grains.walls[1].motion = model(LOADED).walls[1].motion;
     let mut water = water(1e-11);
     water.cells = cells;
     let mut bed = Coupled::<N>::new(device, grains, state, water, None).unwrap();
     for steps in [10, 2, 63] {
         bed.advance(steps).unwrap();
-        let now = bed.grains().snapshot().unwrap();
-        let water = bed.on_walls().unwrap();
-        let sum: DVec3 = now.force.iter().sum();
-        let layers = now.held_force + now.driven_force;
-        let up = now.wall_force[0] - now.wall_force[1] + water[0] - water[1];
-        let size: f64 = now.force.iter().map(|f| f.length()).sum();
-        let size = size + now.wall_force[1] + water[1].abs();
+        let each = bed.grains().pushes_of_companion().unwrap();
+        let [bottom, top] = bed.on_walls().unwrap();
+        let sum: DVec3 = each.iter().sum();
+        let size: f64 = each.iter().map(|f| f.length()).sum();
+        let off = sum + DVec3::new(0.0, 0.0, top - bottom);
         println!(
-            "{N}: {:.1e} {:.1e} of {size:.1e} N, water {:.1} N",
-            sum.x + layers,
-            sum.z - up,
-            water[0] - water[1]
+            "{N}: {:.3e} N up on grains, {bottom:.3e} and {top:.3e} on walls, off by {:.1e} of {size:.1e} N",
+            sum.z,
+            off.length()
         );
-        assert!((sum.x + layers).abs() < 1e-6 * size, "{N}: x");
-        assert!((sum.z - up).abs() < 1e-6 * size, "{N}: z");
+        assert!(sum.z.abs() > 1.0, "{N}: hardly a push");
+        assert!(off.length() < 1e-6 * size, "{N}");
     }
 }
 

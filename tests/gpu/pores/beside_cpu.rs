@@ -10,6 +10,8 @@ use shaders::Device;
 
 pub fn list(suite: &mut Suite) {
     suite.gpu("wet_bed_takes_a_load_as_on_the_cpu", load_step);
+    suite.gpu("wet_pushes_are_held_as_on_the_cpu", held);
+    suite.gpu("wet_bed_drains_through_both_walls_as_on_the_cpu", both_open);
     suite.gpu("wet_bed_under_gravity_is_that_of_the_cpu", at_rest);
     suite.gpu("wet_bed_is_sheared_as_on_the_cpu", shear);
     suite.gpu("wet_fine_lattice_is_that_of_the_cpu", fine);
@@ -75,7 +77,7 @@ fn assert_same<const N: usize>(
     gpu: &coupling::gpu::Coupled<N>,
     allowed: f64,
 ) {
-    let (a, b) = (cpu.water().snapshot(), gpu.snapshot().unwrap());
+    let (a, b) = (cpu.snapshot(), gpu.snapshot().unwrap());
     let apart = Apart::of(&a, &b);
     let share = |[off, most]: [f64; 2]| if most > 0.0 { off / most } else { off };
     let walls = [cpu.water().on_walls(), gpu.on_walls().unwrap()];
@@ -118,8 +120,18 @@ fn assert_same<const N: usize>(
     );
     let (report, other) = (cpu.report(), gpu.read().unwrap().1);
     assert_eq!(
-        (report.interval, report.sub_steps, report.relaid),
-        (other.interval, other.sub_steps, other.relaid)
+        (
+            report.exchange,
+            report.interval,
+            report.sub_steps,
+            report.relaid
+        ),
+        (
+            other.exchange,
+            other.interval,
+            other.sub_steps,
+            other.relaid
+        )
     );
     assert!((report.rattlers - other.rattlers).abs() < 1e-2);
     // Grains: their forces by the size of the largest one.
@@ -172,6 +184,53 @@ fn load_step(device: &Device) {
     );
     assert!((a.work_companion - b.work_companion).abs() < 1e-5 * a.work_companion.abs());
     assert!((a.residual - b.residual).abs() < 1e-4 * a.work_companion.abs());
+}
+
+/// An exchange in every step and in every fourth, in a load and in shear: read between two exchanges.
+fn held(device: &Device) {
+    for (every, parts) in [(1, 1.0), (4, 2.0)] {
+        for shears in [false, true] {
+            let (mut grains, state) = match shears {
+                true => sheared(),
+                false => (model(LOADED), pressed()),
+            };
+            grains.step /= parts;
+            // One search: the CPU exchanges with each.
+            grains.skin = Some(4e-3);
+            let water = Model {
+                exchange: Some(every),
+                ..water(1e-11)
+            };
+            let bed = Bed {
+                grains,
+                state,
+                water,
+            };
+            let (cpu, gpu) = walk::<3>(device, bed, 163);
+            let allowed = if shears { 1e-4 } else { 1e-5 };
+            assert_same(
+                &format!("every {every}, shear {shears}"),
+                &cpu,
+                &gpu,
+                allowed,
+            );
+        }
+    }
+}
+
+/// Water that is squeezed out, and flows from the bottom to the top beside that: how much, each way.
+fn both_open(device: &Device) {
+    let mut water = water(1e-11);
+    water.sides[0] = Side::Pressure(Signal::Steady(2e3));
+    let bed = Bed {
+        grains: model(LOADED),
+        state: pressed(),
+        water,
+    };
+    let (cpu, gpu) = walk::<3>(device, bed, 200);
+    assert_same("both open", &cpu, &gpu, 1e-5);
+    let [bottom, top] = cpu.water().left();
+    assert!(top - bottom > 0.1 * top, "{bottom:e} {top:e}");
 }
 
 fn at_rest(device: &Device) {
@@ -230,7 +289,7 @@ fn broken(device: &Device) {
         water,
     };
     let (cpu, gpu) = walk::<3>(device, bed, 200);
-    assert!(cpu.water().snapshot().vapour.iter().any(|&v| v > 0.0));
+    assert!(cpu.snapshot().vapour.iter().any(|&v| v > 0.0));
     assert_same("broken", &cpu, &gpu, 1e-4);
 }
 
@@ -281,7 +340,7 @@ fn relaid(device: &Device) {
         water.cells = [3, 3, 6];
         water.fluid.compressibility = 1e-4;
         water.interval = Some(16);
-        water.renewal = 1;
+        water.renewal = Some(1);
         let bed = Bed {
             grains,
             state,
@@ -295,7 +354,7 @@ fn relaid(device: &Device) {
             (other.interval, other.sub_steps)
         );
         let squeezed = bed::AREA * fall * steps as f64 * bed::STEP;
-        let apart = Apart::of(&cpu.water().snapshot(), &now);
+        let apart = Apart::of(&cpu.snapshot(), &now);
         println!(
             "relaid {relaid} times: {:e} of {squeezed:e} m3; pressure off by {:.1e} of {:.1e} Pa, \
              flux by {:.1e} of {:.1e} m/s",

@@ -1,7 +1,9 @@
 //! Scenes with water between grains through the program, on both backends, and states that go from
 //! one to the other.
 
+use super::bed::{SIDE, STRESS, model, pressed, water};
 use crate::lab::Suite;
+use coupling::gpu::{Coupled, Memory};
 use experiments::backend::Backend;
 use experiments::output::{netcdf, state};
 use experiments::run::{Options, run};
@@ -12,34 +14,19 @@ use std::sync::atomic::AtomicBool;
 
 pub fn list(suite: &mut Suite) {
     suite.gpu("wet_scenes_run_on_both_backends", both);
+    suite.gpu(
+        "wet_scenes_of_open_pores_are_refused_at_once",
+        refused_at_once,
+    );
+    suite.gpu("wet_memory_is_told_beforehand", memory);
 }
 
-const WET: &str = r#"
-title = "Small and wet"
-[box]
-size = ["4 mm", "4 mm"]
-gravity = "none"
-[grains]
-count = 200
-radius = { law = "uniform", min = "0.45 mm", max = "0.55 mm" }
-density = "2600 kg/m^3"
-[contact]
-normal = { stiffness = "3e4 N/m", restitution = 0.3 }
-tangential = { stiffness = "1e4 N/m", friction = 0.5 }
-[water]
-bed.permeability = "2e-13 m^2"
-sides.top = "drained"
-[[phase]]
-name = "press"
-top = { normal_stress = "10 kPa", damping = "0.05 N s/m" }
-friction = 0.1
-water = "none"
-end = { at_rest = 1e-4, max_duration = "0.2 s" }
-[output]
-series.every = "50 us"
-grains = "none"
-profiles = "none"
-"#;
+/// The phase that presses the bed dry.
+fn pressed_dry() -> Scene {
+    let mut scene = read(tests::wet::SCENE);
+    scene.phases.truncate(1);
+    scene
+}
 
 /// A load on the bed whose state is in the folder.
 fn loaded(folder: &Path, name: &str) -> Scene {
@@ -98,7 +85,7 @@ fn values(file: &Path, variable: &str) -> Vec<f64> {
 fn both(_: &Device) {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    go(&read(WET), Backend::Cpu, &at("press"));
+    go(&pressed_dry(), Backend::Cpu, &at("press"));
     go(&loaded(&at("press"), "load"), Backend::Cpu, &at("cpu"));
     go(&loaded(&at("press"), "load"), Backend::Gpu, &at("gpu"));
     go(&loaded(&at("gpu"), "more"), Backend::Cpu, &at("gpu, cpu"));
@@ -131,6 +118,10 @@ fn both(_: &Device) {
     let water = saved.past.water.expect("the bed is wet");
     assert_eq!(water.state.loads.len(), 200);
     let file = netcdf::open(&at("gpu").join("fluid.nc")).unwrap();
+    let series = netcdf::open(&at("gpu").join("series.nc")).unwrap();
+    let darcy = series.variable("dissipated_darcy").unwrap();
+    let comment = darcy.attribute("comment");
+    assert!(comment.is_some(), "nothing says why it is no number");
     let backend: String = file
         .attribute("backend")
         .unwrap()
@@ -139,4 +130,47 @@ fn both(_: &Device) {
         .try_into()
         .unwrap();
     assert_eq!(backend, "gpu");
+}
+
+/// Gravel, which gets wet in the second phase: said before the first one, and nothing is written.
+fn refused_at_once(_: &Device) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let text = tests::wet::SCENE.replace("2e-13 m^2", "1e-6 m^2");
+    let options = |backend| Options {
+        out: out.clone(),
+        backend,
+        threads: 1,
+        force: false,
+        quiet: true,
+    };
+    let error = run(&read(&text), &options(Backend::Gpu), &AtomicBool::new(true)).unwrap_err();
+    let error = format!("{error:#}");
+    for part in ["phase load", "--backend cpu", "permeability"] {
+        assert!(error.contains(part), "{error}");
+    }
+    assert!(!out.exists());
+    // On the CPU the same scene begins.
+    run(&read(&text), &options(Backend::Cpu), &AtomicBool::new(true)).unwrap();
+}
+
+/// Bytes told and bytes taken, of the two kernels.
+fn memory(device: &Device) {
+    let mut drained = water(1e-12);
+    drained.sides[0] = drained.sides[1].clone();
+    let coarse =
+        Coupled::<3>::new(device, model(STRESS), pressed(), drained.clone(), None).unwrap();
+    let mut fine = water(1e-12);
+    fine.cells = [6, 6, 7];
+    let narrow = Coupled::<5>::new(device, model(STRESS), pressed(), fine.clone(), None).unwrap();
+    let grains = pressed().grains.len();
+    for (told, taken) in [
+        (Memory::of(&drained, SIDE / 3.0, 3, grains), coarse.memory()),
+        (Memory::of(&fine, SIDE / 6.0, 5, grains), narrow.memory()),
+    ] {
+        // What goes along with the grains stands in their part.
+        let taken = taken + 116 * grains as u64;
+        println!("{} bytes told, {taken} taken", told.bytes);
+        assert!(told.bytes.abs_diff(taken) < taken / 20, "{told:?} {taken}");
+    }
 }

@@ -3,7 +3,7 @@
 use super::wet;
 use crate::read;
 use coupling::{NormalStress, Permeability, Resistance};
-use experiments::scene::water::pores::{Reach, Stiffness};
+use experiments::scene::water::pores::{Reach, Stiffness, Suction};
 use lbm::{Fluid, Side, Signal};
 
 fn drained() -> Side {
@@ -123,6 +123,60 @@ fn cells_are_square_whatever_the_box() {
     assert_eq!(of_box[2], 9);
 }
 
+/// Cells two millimetres wide, and as high as they can be told to be.
+#[test]
+fn layers_follow_from_the_room_that_the_water_finds() {
+    let layers = |text: &str, sets: &[&str]| {
+        let scene = read(text, sets).unwrap_or_else(|e| panic!("{e}"));
+        scene.water.unwrap().cells[2]
+    };
+    // The first phase pushes the wall down onto the grains: 200 grains of 0.52 mm³ at 0.6 on 16 mm².
+    assert_eq!(layers(super::WET, &["grains.solid_fraction=0.1"]), 6);
+    let high = "box.size=[\"4 mm\", \"4 mm\", \"80 mm\"]";
+    assert_eq!(layers(super::WET, &[high]), 6);
+    // A suspension under a lid that stays: at 0.1, 65 mm, and the highest grain in it.
+    let top = "top      = { normal_stress = \"10 kPa\", damping = \"0.05 N s/m\" }\n";
+    let held = super::WET
+        .replace(top, "")
+        .replace("water    = \"none\"\n", "");
+    let end = "phase.press.end={ duration = \"1 ms\" }";
+    let of_suspension = layers(&held, &[end, "grains.solid_fraction=0.1"]);
+    assert!((30..=34).contains(&of_suspension), "{of_suspension}");
+    assert_eq!(layers(&held, &[end, high]), 40);
+    // A lid that has come down by 30 mm when the water comes, or onto the bed.
+    let moved = |end: &str| {
+        let top = "phase.press.top={ velocity = \"1 m/s\" }";
+        layers(super::WET, &[top, "phase.load.top=held", high, end])
+    };
+    assert_eq!(moved("phase.press.end={ duration = \"30 ms\" }"), 25);
+    assert_eq!(moved("phase.press.end={ duration = \"90 ms\" }"), 6);
+}
+
+/// Dilation ψ of a bed of height h at the rate γ̇ sucks μ ψ γ̇ h²/2k, where water comes from one side.
+#[test]
+fn suction_follows_from_the_way_to_open_walls() {
+    let suction = |sets: &[&str], height: f64| {
+        let scene = wet(sets);
+        let water = scene.water.as_ref().unwrap();
+        let edges = scene.phases[2].water.as_ref().unwrap();
+        water.suction(edges, 0.4, height, 5.0)
+    };
+    let one = suction(&[], 0.01);
+    let theory = 1.8e-3 * 0.25 * 5.0 * 1e-4 / (2.0 * 2e-13);
+    assert!(
+        matches!(one, Suction::Steady(p) if (p / theory - 1.0).abs() < 0.01),
+        "{one:?}"
+    );
+    // Half of the way from two sides, and twice the height.
+    assert_eq!(suction(&["water.sides.bottom=drained"], 0.02), one);
+    let sealed = suction(&["water.sides.top=tight", "water.stiffness=10 MPa"], 0.01);
+    let theory = 0.25 * 1e7 / (1.0 + 0.4 * 5.1e-10 * 1e7);
+    assert!(
+        matches!(sealed, Suction::Grows(p) if (p / theory - 1.0).abs() < 0.01),
+        "{sealed:?}"
+    );
+}
+
 #[test]
 fn the_resolved_scene_is_the_same_scene() {
     let changes: &[&[&str]] = &[
@@ -143,6 +197,7 @@ fn the_resolved_scene_is_the_same_scene() {
         for key in [
             "layers",
             "spacing",
+            "exchange",
             "interval",
             "cavitation",
             "loose",

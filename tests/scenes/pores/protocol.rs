@@ -135,7 +135,7 @@ fn going_on_from_a_state_gives_the_bits_of_not_having_stopped() {
 }
 
 /// The solver of the first phase of a scene.
-fn begun(scene: &Scene) -> Engine {
+pub fn begun(scene: &Scene) -> Engine {
     let phase = &scene.phases[0];
     let ready = prepare(scene, phase, scene.start.clone(), None).unwrap();
     let machine = Machine::Cpu { threads: 1 };

@@ -9,7 +9,7 @@ mod scalars;
 pub(super) use cells::CellsFile;
 pub use fields::{FIELDS, Field};
 pub use profiles::{PROFILES, Profile};
-pub use scalars::{SCALARS, Scalar};
+pub use scalars::{ON_CPU_ALONE, SCALARS, Scalar};
 
 use coupling::{Ledger, Report, Snapshot};
 use serde_json::{Value, json};
@@ -46,16 +46,19 @@ impl PoreReading {
         (self.report.height / self.now.height).round() as usize
     }
 
-    /// The report as an attribute, in SI units; `rate` is that of shear strain [1/s], zero without.
+    /// The report as an attribute, in SI units, null where a number is not known or has no meaning; `rate` is that of shear strain [1/s], zero without.
     pub fn attribute(&self, rate: f64) -> Value {
         let report = &self.report;
+        // Open pores have no lattice, and nothing diffuses there between two steps.
+        let of_lattice = |number: f64| report.lattice.map(|_| number);
         json!({
             "regime": report.lattice.map_or("open".into(), |lattice| format!("{:?}", lattice.regime).to_lowercase()),
+            "exchange": report.exchange,
             "interval": report.interval,
             "sub_steps": report.sub_steps,
-            "D_n": report.diffusivity,
-            "sigma": report.drag,
-            "courant": report.courant,
+            "D_n": of_lattice(report.diffusivity),
+            "sigma": of_lattice(report.drag),
+            "courant": of_lattice(report.courant),
             "porosity": report.porosity,
             "permeability": report.permeability,
             "storage": report.storage,

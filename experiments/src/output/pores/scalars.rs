@@ -129,6 +129,12 @@ pub static SCALARS: &[Scalar] = &[
         |_, water| water.ledger.elastic,
     ),
     scalar(
+        "kinetic_energy_water",
+        "J",
+        "kinetic energy of the water; zero where drag holds it, which leaves it without inertia",
+        |_, water| water.ledger.kinetic,
+    ),
+    scalar(
         "work_water",
         "J",
         "work of the water on the grains since the phase began",
@@ -156,6 +162,13 @@ pub static SCALARS: &[Scalar] = &[
         |_, water| water.ledger.dissipated_darcy,
     ),
     scalar(
+        "dissipated_method_water",
+        "J",
+        "energy that the water lost to the method since the phase began: in open pores, whose \
+         pressure is implicit in time",
+        |_, water| water.ledger.dissipated_method,
+    ),
+    scalar(
         "dissipated_loose",
         "J",
         "energy that loose grains lost to the water since the phase began",
@@ -180,6 +193,17 @@ pub static SCALARS: &[Scalar] = &[
          the mean velocity of the grains that carry load, since the phase began",
         |_, water| water.report.drift.unwrap_or(f64::NAN),
     ),
+];
+
+/// Those that only the CPU computes: the books of the water's energy need sums over each of its steps in
+/// double precision. On a graphics device they are no numbers, and the file says so.
+pub static ON_CPU_ALONE: [&str; 6] = [
+    "work_walls_water",
+    "work_sides_water",
+    "dissipated_darcy",
+    "dissipated_loose",
+    "energy_residual_water",
+    "solid_fraction_drift",
 ];
 
 /// Which of the layers of cells.

@@ -193,6 +193,10 @@ pub fn word(regime: Regime) -> &'static str {
     }
 }
 
+/// From water thinned a billion times, for slow runs in a short time, to pitch [Pa s]; ice does not
+/// flow through pores.
+const FLOWS: Range = Range::Within(1e-12, 1e9);
+
 fn liquid(table: &Table) -> Fluid {
     let example = "liquid = { density = \"1000 kg/m^3\", viscosity = \"1 mPa s\" }";
     let cold = Fluid::COLD_WATER;
@@ -200,9 +204,10 @@ fn liquid(table: &Table) -> Fluid {
         return cold;
     };
     let above = |key, kind, default| liquid.quantity_or(key, kind, Range::Positive, default);
+    let viscosity = liquid.quantity_or("viscosity", &VISCOSITY, FLOWS, cold.viscosity);
     Fluid {
         density: above("density", &DENSITY, cold.density),
-        viscosity: above("viscosity", &VISCOSITY, cold.viscosity),
+        viscosity,
         compressibility: above("compressibility", &COMPRESSIBILITY, cold.compressibility),
     }
 }

@@ -10,6 +10,9 @@ const DEFAULT: f64 = 2.0;
 const WIDE: f64 = 1.5;
 const LEAST: f64 = 0.7;
 const MOST: f64 = 8.0;
+/// The least height of a cell in mean diameters, as far as it can be guessed: below that a grain fills
+/// cells.
+const THIN: f64 = 0.4;
 /// How far the box may be from whole square cells: it is made of whole units of the GPU's
 /// positions.
 const WHOLE: f64 = 1e-6;
@@ -60,6 +63,21 @@ pub fn read(water: &Table, around: Option<&Around>) -> Option<([usize; 3], f64, 
         let n = reach.count();
         let what = format!("is {layers}, and the weights of a grain reach {n} cells");
         water.wrong("layers", format!("{what}; write {n} or more"));
+        return None;
+    }
+    let most = (around.height / (THIN * around.diameter)) as usize;
+    if layers > most.max(reach.count()) {
+        let what = format!(
+            "is {layers}: layers of {:.2e} m, where grains of {:.2e} m would fill cells",
+            around.height / layers as f64,
+            around.diameter
+        );
+        let right = around.height / (DEFAULT * around.diameter);
+        let right = (right.round() as usize).max(reach.count());
+        water.wrong(
+            "layers",
+            format!("{what}; write {most} at most, and {right} is right"),
+        );
         return None;
     }
     let cells = [nx, ny, layers];
@@ -140,5 +158,7 @@ fn far(a: f64, b: f64) -> f64 {
 
 /// As it was stated: whole units of the GPU's positions change digits that nobody wrote.
 fn short(length: f64) -> String {
-    format!("{} m", length as f32)
+    // Seven digits, and those that are not needed left out.
+    let rounded = format!("{length:.6e}").parse().unwrap_or(length);
+    format!("{rounded} m")
 }

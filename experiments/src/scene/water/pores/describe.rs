@@ -13,7 +13,6 @@ impl Pores {
         let permeability = self.permeability(porosity);
         let storage = porosity * self.fluid.compressibility;
         let diffusivity = permeability / (self.fluid.viscosity * storage);
-        let cell = thickness.min(self.spacing);
         let stiffness = match self.stiffness {
             Stiffness::Unknown => {
                 "unknown: the report of the run has no B, and counts grains rigid".into()
@@ -44,7 +43,7 @@ impl Pores {
                 format!(
                     "of pressure over {:.2e} cells2 in a grain step; the fluid steps after 0.25 at \
                      most, or in every one",
-                    diffusivity * step / (cell * cell)
+                    self.crossed(porosity, height, step)
                 ),
             ),
             (
@@ -58,16 +57,57 @@ impl Pores {
         ]
     }
 
+    /// Over how many cells² pressure diffuses in a grain step [s] in such a bed.
+    pub fn crossed(&self, porosity: f64, height: f64, step: f64) -> f64 {
+        let cell = (height / self.cells[2] as f64).min(self.spacing);
+        let storage = porosity * self.fluid.compressibility;
+        let diffusivity = self.permeability(porosity) / (self.fluid.viscosity * storage);
+        diffusivity * step / (cell * cell)
+    }
+
     /// Time in which pressure drains from a bed of this `porosity` and `height` [m], by the
     /// stiffness that the scene gives, or as if it were rigid [s].
     pub fn drainage_time(&self, porosity: f64, height: f64) -> f64 {
+        let compliance = self.compliance(porosity);
+        height * height * self.fluid.viscosity * compliance / self.permeability(porosity)
+    }
+}
+
+/// Dilation of dense beds of spheres over shear strain, as found in `experiments/wet-shear`.
+pub const DILATION: f64 = 0.25;
+
+impl Pores {
+    /// How far dilation lowers the pressure of a bed of this `porosity` and `height` [m], sheared at
+    /// `rate` [1/s] between such `edges`, if it dilates by [`DILATION`] at all heights alike: where
+    /// water flows in through both walls, through one, or through none.
+    pub fn suction(&self, edges: &Edges, porosity: f64, height: f64, rate: f64) -> Suction {
+        let opens = |side: &&Side| matches!(side, Side::Pressure(_));
+        let drop = self.fluid.viscosity * DILATION * rate.abs() * height * height
+            / self.permeability(porosity);
+        match edges.sides.iter().filter(opens).count() {
+            0 => Suction::Grows(DILATION / self.compliance(porosity)),
+            1 => Suction::Steady(0.5 * drop),
+            _ => Suction::Steady(0.125 * drop),
+        }
+    }
+
+    /// Of water and skeleton, φ β + 1/M, with M as the scene gives it, or as if it were rigid [1/Pa].
+    fn compliance(&self, porosity: f64) -> f64 {
         let yielding = match self.stiffness {
             Stiffness::Given(m) => 1.0 / m,
             Stiffness::Unknown | Stiffness::Measured => 0.0,
         };
-        let compliance = porosity * self.fluid.compressibility + yielding;
-        height * height * self.fluid.viscosity * compliance / self.permeability(porosity)
+        porosity * self.fluid.compressibility + yielding
     }
+}
+
+/// What dilation makes of the pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Suction {
+    /// In the long run, at the place that drains worst [Pa].
+    Steady(f64),
+    /// For each unit of shear strain [Pa].
+    Grows(f64),
 }
 
 impl Edges {

@@ -8,6 +8,9 @@ const BED: &str = "[water.bed] with permeability = \"1e-12 m^2\"";
 /// Permeabilities of clay to those of boulders, and far beyond both [m²].
 const POSSIBLE: Range = Range::Within(1e-24, 1.0);
 
+/// How many times larger or smaller the grains of a law may be than those that are there.
+const OTHER: f64 = 10.0;
+
 /// The law of resistance; `diameter` is the mean one of the grains [m].
 pub fn read(water: &Table, diameter: f64) -> Option<Resistance> {
     water.missing("bed", BED);
@@ -28,7 +31,20 @@ pub fn read(water: &Table, diameter: f64) -> Option<Resistance> {
     let drag = bed.choice_or("drag", &words, Drag::Darcy);
     let by_size = bed.is_word("permeability", "kozeny-carman");
     let size = if by_size || drag != Drag::Darcy {
-        Some(bed.quantity_or("grain_size", &LENGTH, Range::Positive, diameter))
+        let size = bed.quantity_or("grain_size", &LENGTH, Range::Positive, diameter);
+        // Fine sediment between the grains may rule the permeability, but nothing larger; and the
+        // drag is that on the grains themselves.
+        let least = if drag == Drag::Darcy {
+            0.0
+        } else {
+            diameter / OTHER
+        };
+        if !(least..=OTHER * diameter).contains(&size) {
+            let what = format!("is {size:.3e} m, and the grains are {diameter:.3e} m in the mean");
+            bed.wrong("grain_size", format!("{what}; leave it out, to take that"));
+            return None;
+        }
+        Some(size)
     } else {
         let why = "is of use only with permeability = \"kozeny-carman\", or with another drag";
         bed.refuse(&["grain_size"], why);

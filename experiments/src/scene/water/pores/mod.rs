@@ -4,8 +4,11 @@ mod cells;
 mod describe;
 mod edges;
 mod law;
+mod plausible;
 
+pub use describe::{DILATION, Suction};
 pub use edges::{Edges, of_phase};
+pub use plausible::{check, warnings};
 
 use super::liquid;
 use crate::scene::reader::{Range, Table};
@@ -28,6 +31,8 @@ pub struct Pores {
     pub resistance: Resistance,
     /// Where the water breaks; none: it bears any tension.
     pub cavitation: Option<Cavitation>,
+    /// Grain steps from one exchange to the next; none: chosen.
+    pub exchange: Option<u64>,
     /// Grain steps from one fluid step to the next; none: chosen from accuracy.
     pub interval: Option<u64>,
     /// Where the stiffness of the skeleton comes from.
@@ -77,7 +82,7 @@ pub struct Around {
     pub periodic: [bool; 2],
     /// Mean diameter [m].
     pub diameter: f64,
-    /// Height of the bed once it is loaded, as far as it can be guessed [m].
+    /// Height from wall to wall when the water comes, as far as it can be known [m].
     pub height: f64,
     /// Cells of the water that the grains come with, if they do.
     pub cells: Option<[usize; 3]>,
@@ -85,13 +90,34 @@ pub struct Around {
 
 const WATER: &str = "[water] with bed.permeability = \"1e-12 m^2\"";
 
-/// Read `[water]`; none: the scene has none, or one that is wrong. Without `around`, which could
-/// not be read, only words are checked.
-pub fn read(root: &Table, around: Option<&Around>) -> Option<Pores> {
-    if !root.has("water") {
-        return None;
+/// `[water]` of which the walls have been read: phases speak of them, and how high the cells are
+/// follows from the phases.
+pub struct Begun<'a> {
+    table: Table<'a>,
+    edges: Option<Edges>,
+}
+
+impl<'a> Begun<'a> {
+    /// Begin; none: the scene has no such table.
+    pub fn of(root: &Table<'a>) -> Option<Self> {
+        let table = root.table("water", WATER)?;
+        let edges = edges::read(&table);
+        Some(Self { table, edges })
     }
-    let table = root.table("water", WATER)?;
+
+    /// What is at the walls where a phase says nothing; tight ones where that is wrong.
+    pub fn edges(&self) -> Edges {
+        self.edges.clone().unwrap_or_else(Edges::tight)
+    }
+
+    /// Read the rest; none: something is wrong. Without `around`, which could not be read, only
+    /// words are checked.
+    pub fn finish(self, around: Option<&Around>) -> Option<Pores> {
+        rest(&self.table, self.edges, around)
+    }
+}
+
+fn rest(table: &Table, edges: Option<Edges>, around: Option<&Around>) -> Option<Pores> {
     let only_alone = "belongs to water alone; between grains the bed tells";
     table.refuse(
         &[
@@ -106,14 +132,14 @@ pub fn read(root: &Table, around: Option<&Around>) -> Option<Pores> {
         ],
         only_alone,
     );
-    let fluid = liquid(&table);
-    let lattice = cells::read(&table, around);
-    let resistance = law::read(&table, around.map_or(1.0, |around| around.diameter));
-    let edges = edges::read(&table);
-    let cavitation = cavitation(&table);
-    let interval = interval(&table);
-    let stiffness = stiffness(&table);
-    let loose = loose(&table);
+    let fluid = liquid(table);
+    let lattice = cells::read(table, around);
+    let resistance = law::read(table, around.map_or(1.0, |around| around.diameter));
+    let cavitation = cavitation(table);
+    let exchange = steps(table, "exchange", "2");
+    let interval = steps(table, "interval", "64");
+    let stiffness = stiffness(table);
+    let loose = loose(table);
     let (cells, spacing, reach) = lattice?;
     Some(Pores {
         cells,
@@ -122,6 +148,7 @@ pub fn read(root: &Table, around: Option<&Around>) -> Option<Pores> {
         fluid,
         resistance: resistance?,
         cavitation: cavitation?,
+        exchange: exchange?,
         interval: interval?,
         stiffness: stiffness?,
         loose: loose?,
@@ -147,15 +174,16 @@ fn cavitation(table: &Table) -> Option<Option<Cavitation>> {
     Some(Some(Cavitation { pressure }))
 }
 
-fn interval(table: &Table) -> Option<Option<u64>> {
-    if !table.has("interval") {
-        table.choose("interval", "auto");
+/// Grain steps, or none where they are to be chosen.
+fn steps(table: &Table, key: &'static str, example: &'static str) -> Option<Option<u64>> {
+    if !table.has(key) {
+        table.choose(key, "auto");
         return Some(None);
     }
-    if table.is_word("interval", "auto") {
+    if table.is_word(key, "auto") {
         return Some(None);
     }
-    let steps = table.integer("interval", 1, "64");
+    let steps = table.integer(key, 1, example);
     steps.map(|steps| Some(steps as u64))
 }
 
@@ -192,6 +220,7 @@ impl Pores {
             sides: edges.sides.clone(),
             normal_stress: edges.normal_stress,
             cavitation: self.cavitation,
+            exchange: self.exchange,
             interval: self.interval,
             stiffness,
             loose: self.loose,
