@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 HERE = Path(__file__).parent
-STIFFNESS = {1e7: "10$^7$", 1e9: "10$^9$"}
+STIFFNESS = {1e7: "10$^7$", 4e7: "4·10$^7$", 1e8: "10$^8$", 1e9: "10$^9$"}
 
 
 def table(name):
@@ -116,7 +116,7 @@ def intervals(axes):
 
 def loose(axes):
     rows = table("loose.csv")
-    for contact, colour in ((1e7, "C0"), (1e9, "C1")):
+    for contact, colour in ((1e7, "C0"), (4e7, "C2"), (1e8, "C4"), (1e9, "C1")):
         mine = [r for r in rows if r["contact stiffness"] == contact]
         weights = sorted({r["f"] for r in mine})
         errors = [[100 * r["T 0.4"] for r in mine if r["f"] == f] for f in weights]
@@ -139,12 +139,10 @@ def shear(axes):
     rows = table("shear.csv")
     seeds = sorted({r["seed"] for r in rows})
 
-    def of(permeability, interval, weight=1.0):
-        return [
-            r["shear stress"] / 1e3
-            for r in rows
-            if (r["permeability"], r["interval"], r["f"]) == (permeability, interval, weight)
-        ]
+    def of(permeability, interval, exchange=1):
+        case = (permeability, exchange, interval, 1.0)
+        keys = ("permeability", "exchange", "interval", "f")
+        return [r["shear stress"] / 1e3 for r in rows if tuple(r[key] for key in keys) == case]
 
     steps = [1, 2, 4, 8, 16]
     for k, seed in enumerate(seeds):
@@ -155,6 +153,11 @@ def shear(axes):
             some = of(permeability, n)
             label = f"k = {power(permeability)} m²" if n == 1 else None
             axes.plot([n] * len(some), some, "s", ms=4, color=colour, label=label)
+    # Fluid steps at each exchange, both every two grain steps.
+    for permeability in (1e-11, 1e-10, 1e-9):
+        some = of(permeability, 2, 2)
+        label = "exchange every 2 as well" if permeability == 1e-11 else None
+        axes.plot([2] * len(some), some, "x", ms=6, color="k", label=label)
     dry = [r["shear stress"] / 1e3 for r in rows if r["permeability"] == "dry"]
     axes.axhspan(min(dry), max(dry), color="0.8", label="dry")
     axes.set_xscale("log", base=2)

@@ -149,8 +149,9 @@ def tables(wet, dry):
             cells += [""] * 5
         print("| " + " | ".join(cells) + " |")
     for run in wet:
-        if run.mean("vapour_volume", EARLY) > 0:
-            most = float(run.series.vapour_volume.max()) / (0.16**2 * run.height(EARLY))
+        most = float(run.series.vapour_volume.max()) / (0.16**2 * run.height(EARLY))
+        # Not where it opens for a moment in a cell.
+        if most > 5e-5:
             first = float(run.series.strain[(run.series.vapour_volume > 0).values.argmax()])
             print(f"vapour in {name(run)}, {run.rate:g} 1/s, seed {run.seed}: from strain {first:.4f} on, at most {100 * most:.2f} % of the bed")
     for run in [run for run in wet if float(run.series.strain[-1]) > 0.9]:
