@@ -98,26 +98,32 @@ enum Kind {
     Drained,
 }
 
-/// Water in the bed, drained at the top.
-fn water<const N: usize>(bed: &Bed, kind: Kind) -> Model {
+/// Water in the bed, drained at the top, with steps as accuracy asks for.
+pub(super) fn water_of<const N: usize>(bed: &Bed, permeability: f64) -> Model {
     let finer = N / 2;
     let [across, up] = CELLS.map(|cells| cells * finer);
     let [nx, ny] = bed
         .packing
         .size
         .map(|side| (side / UNIT_SIDE).round() as usize * across);
+    let law = Resistance::Darcy(Permeability::constant(permeability));
+    Model {
+        sides: [Side::FreeSlip, Side::Pressure(Signal::Steady(0.0))],
+        ..Model::new([nx, ny, up], Fluid::COLD_WATER, law)
+    }
+}
+
+fn water<const N: usize>(bed: &Bed, kind: Kind) -> Model {
     let (permeability, exchange, interval) = match kind {
         Kind::Exchange => (1e-18, Some(1), Some(1 << 20)),
         Kind::FluidStep => (1e-12, Some(1), Some(1)),
         Kind::Coupled => (1e-12, None, None),
         Kind::Drained => (1e-10, None, None),
     };
-    let law = Resistance::Darcy(Permeability::constant(permeability));
     Model {
-        sides: [Side::FreeSlip, Side::Pressure(Signal::Steady(0.0))],
         exchange,
         interval,
-        ..Model::new([nx, ny, up], Fluid::COLD_WATER, law)
+        ..water_of::<N>(bed, permeability)
     }
 }
 

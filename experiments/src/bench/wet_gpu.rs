@@ -8,10 +8,9 @@ use super::case::{Bed, Case};
 use super::kept::Kept;
 use super::packing::Sizes;
 use super::report::{Section, median_and_range};
+use super::wet::water_of;
 use anyhow::Result;
 use coupling::gpu::Coupled;
-use coupling::{Model, Permeability, Resistance};
-use lbm::{Fluid, Side, Signal};
 use serde::Serialize;
 use shaders::Device;
 use std::time::Instant;
@@ -53,10 +52,6 @@ pub struct WetRow {
 
 /// Steps that are timed section by section.
 const TIMED: u64 = 256;
-/// Cells of two mean diameters along a unit of the packing, and upwards.
-const CELLS: [usize; 2] = [5, 4];
-const UNIT_SIDE: f64 = 0.2;
-
 /// Measure a wet bed of so many grains, print its rows and keep them.
 ///
 /// # Errors
@@ -73,18 +68,6 @@ pub fn speed(device: &Device, grains: usize, rounds: u32, kept: &mut Kept) -> Re
     kept.add(&rows)
 }
 
-fn water<const N: usize>(bed: &Bed) -> Model {
-    let finer = N / 2;
-    let [across, up] = CELLS.map(|cells| cells * finer);
-    let sides = bed.packing.size;
-    let [nx, ny] = sides.map(|side| (side / UNIT_SIDE).round() as usize * across);
-    let law = Resistance::Darcy(Permeability::constant(1e-12));
-    Model {
-        sides: [Side::FreeSlip, Side::Pressure(Signal::Steady(0.0))],
-        ..Model::new([nx, ny, up], Fluid::COLD_WATER, law)
-    }
-}
-
 fn measure<const N: usize>(device: &Device, bed: &Bed, rounds: u32) -> Result<WetRow> {
     // One at a time on the device, so that memory suffices for both.
     let device = &Device::open_adapter((*device.adapter).clone())?;
@@ -96,7 +79,7 @@ fn measure<const N: usize>(device: &Device, bed: &Bed, rounds: u32) -> Result<We
     };
     let (model, start) = Case::Poster.start(bed);
     let mut dry = dem::gpu::Solver::new(device, model.clone(), start.clone())?;
-    let water = water::<N>(bed);
+    let water = water_of::<N>(bed, 1e-12);
     let cells = water.cells.iter().product();
     let mut wet = Coupled::<N>::new(device, model, start, water, None)?;
     dry.advance(steps)?;
